@@ -101,7 +101,7 @@ void Scheduler::on(const input::BandStored& in) {
     }
   }
   Coverage::Change change;
-  if (in.written) {
+  if (in.written) {  // false: all rows were stored already, so the result was only compared
     change = bands_.store(*job, *pass, in, reporter);
     comparison_.open_audits(*job, in, reporter, change.rows);
   }

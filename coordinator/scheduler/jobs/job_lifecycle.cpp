@@ -1,6 +1,7 @@
-// advance() is called after each change of a job's rows. It evaluates a checkpoint that waits (a
-// number of samples at which the error is compared with its target), ends a job whose time is up,
-// and requests the image when all passes are complete. end() is the only way to a final state.
+// advance() is called after each change of a job's rows. It evaluates a checkpoint that had to wait
+// for audits, ends a job whose time is up, and requests the image when all passes are complete. A
+// checkpoint is a number of samples at which the error is compared with its target. An audit is a
+// second rendering of stored rows, to compare. end() is the only way to a final state.
 
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
 

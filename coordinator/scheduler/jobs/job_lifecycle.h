@@ -25,7 +25,8 @@ class JobLifecycle {
   /// rows, which is compared with the first). MUST be called after each change of the stored rows
   /// or of the audits.
   void advance(Job& job);
-  /// Notes the error that the film measured after a pass, and evaluates it if this is a checkpoint.
+  /// Notes the error of the image, which was measured after a pass. Evaluates the error if the
+  /// samples of the image are those of a checkpoint.
   void pass_merged(const input::PassMerged& in);
   /// The image is on disk: the job is done.
   void result_written(const input::ResultWritten& in);

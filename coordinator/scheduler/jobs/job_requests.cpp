@@ -1,4 +1,5 @@
-// Each request is checked first; then it emits records, which change the job.
+// Each function handles one request of a user. It checks the request first. Then it emits journal
+// records, by which the job is changed.
 
 #include "coordinator/scheduler/jobs/job_requests.h"
 

@@ -22,10 +22,10 @@ class JobRequests {
   /// are too many jobs.
   void submit(const input::Submit& in);
   /// cancel(), pause(), resume() and set_priority() fail with NOT_FOUND if there is no such job.
-  /// All of them except cancel() fail with FAILED_PRECONDITION if the job is final. Cancelling a
-  /// final job has no effect.
+  /// All of them except cancel() fail with FAILED_PRECONDITION if the job is final (done, failed or
+  /// cancelled). Cancelling a final job has no effect.
   void cancel(const input::Cancel& in);
-  /// Also fails with FAILED_PRECONDITION if the job is finishing.
+  /// Also fails with FAILED_PRECONDITION if the job is finishing: all of it is rendered.
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
   /// Also fails with INVALID_ARGUMENT if the priority is out of range.

@@ -152,8 +152,8 @@ void Sequences::retry(const input::RetryFrames& in) {
   }
 }
 
-/// Makes the frame wait again, and forgets its job, which has failed or was cancelled. `failures`:
-/// number of its jobs that count as failed.
+/// Makes the frame wait again, and forgets the frame's job, which has failed or was cancelled.
+/// `failures`: number of the frame's jobs that count as failed.
 void Sequences::wait_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
                            const std::string& reason) {
   const Sequence::Frame& frame = *sequence.frame(number);
@@ -273,7 +273,7 @@ void Sequences::advance() {
 }
 
 /// Brings one sequence up to date. `open_frames`: number of frame jobs that count against
-/// kMaxOpenFrames. The frame jobs that are made here are added to it.
+/// kMaxOpenFrames. It is increased by the number of frame jobs that this function makes.
 void Sequences::advance(Sequence& sequence, std::size_t& open_frames) {
   while (const Sequence::Frame* failed = sequence.next_to_retry()) {
     wait_again(sequence, failed->number, failed->failures + 1, failed->reason);

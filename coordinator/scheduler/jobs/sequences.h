@@ -1,9 +1,10 @@
 #pragma once
 
-// Handles sequences (jobs of many frames): makes the jobs of their frames when workers are about to
-// need them, tries failed frames again, and ends sequences. Also handles the requests of users
-// about sequences. If a request cannot be granted, its function sets the status of the step to an
-// error. This status is the answer to the request.
+// Handles sequences (jobs of many frames). Each frame is rendered by a job of its own, its frame
+// job. Makes the frame jobs when workers are about to need them, tries failed frames again, and
+// ends sequences. Also handles the requests of users about sequences. If a request cannot be
+// granted, its function sets the status of the step to an error. This status is the answer to the
+// request.
 
 #include <cstddef>
 #include <string>
@@ -42,8 +43,8 @@ class Sequences {
   /// Forgets the final sequences among these jobs, with all their frames. Skips all other jobs.
   void forget(const input::Forget& in);
 
-  /// Tries failed frames again, makes the next frame jobs, and ends sequences of which each frame
-  /// is done or has failed. MUST be called in each step before work is given to workers.
+  /// Tries failed frames again, and makes the next frame jobs. Ends a sequence when each of its
+  /// frames is done or has failed. MUST be called in each step before work is given to workers.
   void advance();
   /// Writes the elapsed times of the sequences to the journal at intervals. A crash loses at most
   /// one second or one fiftieth of the time, whichever is longer.

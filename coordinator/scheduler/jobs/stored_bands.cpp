@@ -67,7 +67,8 @@ void StoredBands::free_damaged(Job& job, const input::BandsDamaged& in) {
   context_.jobs.mark_leasable(job);
 }
 
-/// Ends the audits of a band that the process had stored: nothing is left to compare with.
+/// Ends the audits (second renderings, to compare) of a band that the process had stored. The
+/// stored result is lost, so nothing is left to compare with.
 void StoredBands::close_audits(Job& job, const Band& band, WorkerProcessId process) {
   const auto is_of_it = [&](const Audit& audit) {
     return audit.stored().reporter.process == process && overlap(audit.band(), band);

@@ -19,7 +19,7 @@ class StoredBands {
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
                          const Reporter& reporter);
   /// Frees the damaged bands that are still counted as stored. A job that is finishing runs again,
-  /// because the film could not make its image.
+  /// because its image could not be made without the damaged bands.
   void free_damaged(Job& job, const input::BandsDamaged& in);
   /// After a restart: journals which audited bands (whose result a second machine has confirmed)
   /// are missing from the band log, the file of the job's stored bands. The same process may render

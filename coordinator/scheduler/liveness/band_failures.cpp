@@ -85,8 +85,8 @@ void BandFailures::check_progress() {
   }
   for (const LeaseId id : stuck) {
     const Lease* lease = context_.leases.find(id);
-    // When a stuck lease ends, the next lease of its worker starts its timeout again, so it is not
-    // late any more. The leases of a job that has failed no longer exist.
+    // When a stuck lease ends, the timeouts of its worker's later leases start again, so these
+    // leases are not late any more. The leases of a job that has failed no longer exist.
     if (lease == nullptr || !is_late(*lease)) {
       continue;
     }

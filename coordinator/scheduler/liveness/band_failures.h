@@ -1,8 +1,8 @@
 #pragma once
 
 // Handles bands (ranges of rows and samples, leased to a worker) that a worker could not render, or
-// on which it makes no progress. Fails jobs of which a band failed too often, or which no connected
-// worker may render any more.
+// on which it makes no progress. Fails a job if one of its bands failed too often, or if no
+// connected worker may render the job any more.
 
 #include <string>
 
@@ -29,12 +29,13 @@ class BandFailures {
   /// A worker reports that it could not render a band.
   void band_failed(const input::BandFailed& in);
   /// Ends each lease that made no progress for the progress timeout. The timeout is longer while a
-  /// finished band is being uploaded. The end counts as a failure of the worker, except for the
-  /// lease of an audit (a second rendering of stored rows, to compare): another machine gets the
-  /// audit instead.
+  /// finished band is being uploaded. The end counts as a failure of the worker. Exception: if the
+  /// lease is for an audit (a second rendering of stored rows, to compare), another machine gets
+  /// the audit, and no failure is counted.
   void check_progress();
   /// Fails a job that no connected worker may render any more, once workers have had time to
-  /// reconnect.
+  /// reconnect. If no connected native worker (one that is no browser) has failed too many of the
+  /// job's bands, the job is not failed but waits for a worker.
   void check_renderable(Job& job);
 
  private:

@@ -117,7 +117,7 @@ void CrashAttribution::fail_if_blamed(Job& job, const Worker& worker, const Band
     }
   }
   if (names.size() < 2) {
-    return;
+    return;  // a band is never blamed for the losses of a single worker
   }
   const std::string reason =
       absl::StrCat(names.size(), " workers were lost while they rendered ", name_of(band), " (",

@@ -23,8 +23,8 @@ struct HeldBand {
   bool alone = false;  ///< the worker held nothing else
 };
 
-/// Rate of workers that are lost at a band for reasons other than the band. It determines the
-/// number of crashes at one band that are needed to blame the band.
+/// Estimates how often a worker is lost at a band for reasons other than the band. This rate
+/// determines how many crashes at one band are needed to blame the band.
 class CrashRate {
  public:
   void add_band() { add(bands_); }

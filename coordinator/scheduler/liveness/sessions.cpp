@@ -149,7 +149,8 @@ void Sessions::admit(Worker& worker, const input::Hello& in) {
   context_.available.update(worker);
 }
 
-/// Ends the leases that the worker does not name, and revokes those that it names and may not keep.
+/// `held`: the leases that the worker names in its Hello. Ends the worker's leases that are not in
+/// `held`, and revokes those in `held` that the worker may not keep.
 void Sessions::reconcile_leases(Worker& worker, const std::vector<WorkerHello::Held>& held) {
   worker.revoked.clear();
   std::vector<LeaseId> dropped;

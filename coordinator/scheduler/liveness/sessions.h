@@ -27,8 +27,8 @@ class Sessions {
            CrashAttribution& crashes)
       : context_(context), ledger_(ledger), barrier_(barrier), crashes_(crashes) {}
 
-  /// Admits a worker, or refuses it with a reason. Leases that it still holds are kept or revoked;
-  /// those that it does not hold any more are ended.
+  /// Admits a worker, or refuses it with a reason. Leases that the worker still holds are kept or
+  /// revoked. Leases that it does not hold any more are ended.
   void hello(const input::Hello& in);
   /// Notes that the worker lives, and the progress of its leases.
   void heartbeat(const input::Heartbeat& in);
@@ -52,7 +52,9 @@ class Sessions {
 
   /// Returns true if there is no place for one more worker. Browsers cannot take all places.
   bool is_full(const WorkerHello& worker) const;
+  /// Refuses the worker, and keeps the refusal, so that it is shown to users.
   void refuse(const input::Hello& in, const std::string& reason);
+  /// Connects the worker, and decides which of the leases that it still holds it may keep.
   void admit(Worker& worker, const input::Hello& in);
   void reconcile_leases(Worker& worker, const std::vector<WorkerHello::Held>& held);
   bool keep_lease(Worker& worker, const WorkerHello::Held& held);

@@ -87,8 +87,8 @@ std::optional<std::string> broken_pass(const Context& context, const Job& job, c
     const Lease* lease = context.leases.find(id);
     if (lease == nullptr || lease->job != job.id || lease->band.samples != cell.samples ||
         cell.rows.first < lease->band.rows.first || cell.rows.last > lease->band.rows.last) {
-      broken = absl::StrCat("row ", cell.rows.first, " is leased as ", id,
-                            ", and that lease does not contain it");
+      broken = absl::StrCat("row ", cell.rows.first, " is owned by lease ", id,
+                            ", which does not exist or does not contain the row");
     }
   });
   return broken ? broken : std::move(partition);

@@ -35,10 +35,11 @@ class Restart {
   /// Notes for users that this many bytes of the job's band log (the file of its stored bands) are
   /// damaged.
   void note_damage(JobId id, std::uint64_t bytes);
-  /// Ends the replay: begins the reconnect barrier (nothing is leased until former workers are
-  /// back), opens the audits of disputed rows (rows for which two machines returned different
-  /// pixels) again, compares duplicate bands, and continues each job. A job that was begun with
-  /// another pixel version (a number that changes whenever rendered pixels change) fails.
+  /// Ends the replay in four steps. Begins the reconnect barrier: nothing is leased until the
+  /// former workers are back. For each row for which two machines returned different pixels, opens
+  /// an audit again (the row is rendered once more, to compare). Compares the bands that were
+  /// rendered twice. Continues each job and sequence; one that was begun with another pixel version
+  /// (a number that changes whenever rendered pixels change) fails.
   void finish();
 
  private:

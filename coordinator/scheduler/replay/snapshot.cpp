@@ -32,7 +32,7 @@ void add_job(const Job& job, std::vector<Record>& out) {
     out.push_back(record::PriorityChanged{job.id, job.priority});
   }
   if (job.held) {
-    out.push_back(record::HoldChanged{job.id, true});
+    out.push_back(record::HoldChanged{job.id, /*held=*/true});
   }
   add_passes(job, out);
   if (job.fixed_samples) {
@@ -71,7 +71,7 @@ void add_sequence(const Sequence& sequence, std::vector<Record>& out) {
     out.push_back(record::PriorityChanged{sequence.id, sequence.priority});
   }
   if (sequence.held) {
-    out.push_back(record::HoldChanged{sequence.id, true});
+    out.push_back(record::HoldChanged{sequence.id, /*held=*/true});
   }
   for (const Sequence::Frame& frame : sequence.frames()) {
     if (!frame.manifest.empty()) {
@@ -108,7 +108,7 @@ std::vector<Record> snapshot(const Context& context) {
   // A browser that has left joins and leaves in the replay, so that it stays known as a browser.
   for (const auto& [process, instance] : context.browsers) {
     if (!context.joined.contains(instance)) {
-      records.push_back(record::WorkerJoined{instance, true});
+      records.push_back(record::WorkerJoined{instance, /*browser=*/true});
       records.push_back(record::WorkerLeft{instance});
     }
   }

@@ -1,6 +1,6 @@
-// Quarantining a machine journals a record for each of its worker processes, disconnects those that
-// are connected, and frees the rows that they stored in active jobs, so that these are rendered
-// again.
+// Quarantining a machine journals a record for each of its worker processes, and disconnects those
+// that are connected. The rows that these processes stored in active jobs are freed, so that the
+// rows are rendered again.
 
 #include "coordinator/scheduler/trust/quarantine.h"
 
@@ -63,7 +63,7 @@ void Quarantine::add_earlier_processes(const Reporter& reporter,
   }
 }
 
-/// Disconnects the worker; it gets no more work.
+/// Disconnects the worker, and marks it as quarantined, so that it gets no more work.
 void Quarantine::expel(Worker& worker) {
   worker.quarantined = true;
   worker.reason = context_.quarantine

@@ -1,7 +1,7 @@
 #pragma once
 
-// Puts machines that returned wrong pixels under quarantine: they get no work until a user lifts
-// it, and their rows of active jobs are rendered again.
+// Puts machines that returned wrong pixels under quarantine. Such a machine gets no work until a
+// user lifts the quarantine. The rows that it rendered in active jobs are rendered again.
 
 #include <set>
 #include <string>
@@ -21,9 +21,10 @@ class Quarantine {
   /// processes that report its name. `reason` continues a sentence that begins with the machine's
   /// name. Jobs whose image was requested keep their rows, since the image may be written already.
   void impose(const Reporter& reporter, const std::string& reason);
-  /// A user quarantines a worker or machine by its name. NOT_FOUND: no known worker has the name.
+  /// A user quarantines a worker or machine by its name. Answers NOT_FOUND if no known worker has
+  /// the name.
   void request(const input::Quarantine& in);
-  /// A user lifts a quarantine. NOT_FOUND: no worker of this name is under quarantine.
+  /// A user lifts a quarantine. Answers NOT_FOUND if no worker of this name is under quarantine.
   void lift(const input::LiftQuarantine& in);
 
  private:

@@ -106,8 +106,9 @@ void ResultComparison::note_dispute(const Job& job, const Audit& audit,
 }
 
 void ResultComparison::reopen_disputes(Job& job) {
-  // Makes the result that a claim describes. If the process has not connected in this epoch, the
-  // claim names its machine.
+  // A claim is one of the two results of a journalled dispute. Makes an Audit::Result from it. The
+  // machine's name is taken from the claim if the process has not connected in this epoch (run of
+  // the coordinator).
   const auto result = [this](const record::RowDisputed::Claim& claim) {
     Reporter reporter = context_.reporter_of(claim.process);
     const bool away = reporter.machine.empty();
@@ -122,8 +123,8 @@ void ResultComparison::reopen_disputes(Job& job) {
         pass->process_of_row(one.band.samples, one.band.rows.first) != one.stored.process) {
       continue;
     }
-    // An audit may already be open because the row was selected for audits. Its result may lack the
-    // machine, which the claim names. So the audit is replaced.
+    // An audit may already be open because the row was selected for audits. The result in that
+    // audit may lack the machine's name, but the claim has the name. So the audit is replaced.
     std::erase_if(job.audits,
                   [&](const Audit& a) { return a.band() == one.band && !a.disputed(); });
     auto audit = std::find_if(job.audits.begin(), job.audits.end(),

@@ -17,8 +17,8 @@ class ResultComparison {
   ResultComparison(Context& context, LeaseLedger& ledger, Quarantine& quarantine)
       : context_(context), ledger_(ledger), quarantine_(quarantine) {}
 
-  /// Opens audits of these rows of the band, which were just stored, if the band is selected for
-  /// audits.
+  /// If the band is selected for audits, opens audits of `rows`. These are rows of the band that
+  /// were just stored.
   void open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
                    const std::vector<RowRange>& rows);
   /// Compares a result with the stored digests of its rows. Adds it to the audits of these rows,

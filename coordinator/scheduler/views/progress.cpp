@@ -1,5 +1,6 @@
-// The remaining time is the thread time of all samples that are not stored yet, divided by the
-// number of threads that work on the job. The times per row come from measurements (RowTimes).
+// Computes the fraction of a job that is done, its remaining time, and its workers. The remaining
+// time is the thread time of all samples that are not stored yet, divided by the number of threads
+// that work on the job. The times per row come from measurements (RowTimes).
 
 #include "coordinator/scheduler/views/progress.h"
 

@@ -8,8 +8,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the part of the job's work that is done, [0, 1]. For a job with a time limit, it is the
-/// part of its time that has passed.
+/// Returns the part of the job's work that is done, [0, 1]. For a job with a time limit, the result
+/// is the part of its time that has passed. For a job with an error target, it is 0 until the first
+/// error is measured.
 double fraction_done(const Job& job, Time now);
 
 /// Returns the remaining time in seconds; negative: unknown. For a job with a time limit, it is the

@@ -1,4 +1,5 @@
-// Sums the states of a sequence's frames, and the progress of the frame jobs that are not final.
+// Makes the view of a sequence (a job of many frames) from the states of its frames and from the
+// progress of the frame jobs that are not final. Each frame is rendered by its own frame job.
 
 #include "coordinator/scheduler/views/sequence_views.h"
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::size_t kMaxNumbers = 200;  ///< maximum bytes of the frame numbers in a sentence
 
-/// Returns the sum over the frames being rendered; each adds the part that is done, in [0, 1].
+/// Returns a sum over the frames being rendered. Each frame adds the part of it that is done, in
+/// [0, 1].
 double rendered_parts(const Context& context, const Sequence& sequence, Time now) {
   double parts = 0;
   for (const JobId id : sequence.open_jobs()) {

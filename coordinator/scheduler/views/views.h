@@ -42,7 +42,8 @@ class Views {
   JobView view(const Job& job, Time now) const;
   /// Returns the reason why no worker may render the job.
   std::string nobody_reason(const Job& job) const;
-  /// Returns why an idle worker may render no job that has bands to give; may be empty.
+  /// Returns why an idle worker may not render the first job that has bands to give. Empty if
+  /// there is no such job, if the worker may render one of these jobs, or if it is not idle.
   std::string idle_reason(const Worker& worker) const;
   /// Returns the reason why the worker may not render the job.
   std::string refusal(const Worker& worker, const Job& job) const;
