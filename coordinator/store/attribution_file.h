@@ -1,7 +1,7 @@
 #pragma once
 
-// Stores which worker rendered which rows of an image, in a file beside it. For display only: the
-// image is valid without it.
+// Stores which worker rendered which rows of an image, in a file beside the image. The file is for
+// display only: the image is valid without the file.
 
 #include <string>
 #include <vector>
@@ -22,8 +22,8 @@ struct RowsBy {
 /// Writes the file atomically.
 absl::Status write_attribution(const std::vector<RowsBy>& attribution, const std::string& path);
 
-/// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.
-/// RESOURCE_EXHAUSTED: far longer than any attribution.
+/// Reads the file. NOT_FOUND: there is no such file. DATA_LOSS: the file is damaged; the message
+/// has the reason. RESOURCE_EXHAUSTED: the file is far longer than any attribution.
 absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path);
 
 }  // namespace bandsaw::coordinator

@@ -1,7 +1,8 @@
 #pragma once
 
-// The band log of one job: an append-only file of band records, which hold the sums of the pixels
-// of a range of rows and samples as a worker rendered them (renderlib/render/band_file.h).
+// The band log of one job: an append-only file of band records. A record has the result of one band
+// (a range of rows and samples): the sums of its pixels, as a worker rendered them
+// (renderlib/render/band_file.h).
 
 #include <cstdint>
 #include <string>
@@ -53,7 +54,7 @@ class BandLog {
 };
 
 /// Reads the record at this byte offset of a log. NOT_FOUND: no such log. DATA_LOSS, OUT_OF_RANGE:
-/// there is no complete record.
+/// no complete record begins at this offset.
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset);
 
 }  // namespace bandsaw::coordinator

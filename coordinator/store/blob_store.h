@@ -28,8 +28,8 @@ class BlobStore : public BlobSource {
 
   /// Returns true if the whole blob is stored.
   bool has(const wire::Digest& digest) const;
-  /// Returns how many bytes an interrupted upload of the blob has left. Returns 0 if it left none,
-  /// or while an upload of the blob is in progress.
+  /// Returns the number of bytes that are kept of an interrupted upload of the blob. Returns 0 if
+  /// none are kept, or while an upload of the blob is in progress.
   std::uint64_t partial(const wire::Digest& digest) const { return partials_->size(digest); }
 
   /// Returns the blob, memory-mapped. Its digest is checked at the first call since the process
@@ -52,8 +52,8 @@ class BlobStore : public BlobSource {
   /// Removes partial blobs that were not written to for `seconds`. `now`: seconds since 1970.
   void remove_partials(double now, double seconds) { partials_->remove_unused(now, seconds); }
 
-  /// Writes a blob that arrives in pieces. If it is destroyed without commit, the bytes are kept as
-  /// a partial blob, unless an error occurred. The store MUST outlive it.
+  /// Writes a blob that arrives in pieces. If a Writer is destroyed without commit(), the bytes are
+  /// kept as a partial blob, unless an error occurred. The store MUST outlive the Writer.
   class Writer {
    public:
     Writer(Writer&&) noexcept = default;

@@ -21,6 +21,7 @@ class DataFolder {
   static absl::StatusOr<DataFolder> open(const std::string& path);
 
   const std::string& path() const { return path_; }
+  // The functions below return paths of files and folders in the data folder. `id`: of a job.
   std::string journal() const { return path_ + "/journal.sqlite"; }
   std::string reserve() const { return path_ + "/reserve"; }
   std::string blobs() const { return path_ + "/blobs"; }
@@ -28,12 +29,13 @@ class DataFolder {
   std::string job(JobId id) const;
   std::string bands(JobId id) const { return job(id) + "/bands"; }
   std::string result(JobId id) const { return job(id) + "/result"; }
-  /// The mean of the first part of each pixel's samples (Finished::first).
+  /// File with the mean of the first part of each pixel's samples (Finished::first).
   std::string first(JobId id) const { return job(id) + "/first"; }
-  /// The number of samples of each pixel of an adaptive job (Finished::samples).
+  /// File with the number of samples of each pixel of an adaptive job (Finished::samples).
   std::string samples(JobId id) const { return job(id) + "/samples"; }
+  /// File that says which worker rendered which rows (attribution_file.h).
   std::string attribution(JobId id) const { return job(id) + "/attribution"; }
-  /// The name that older versions gave to the attribution.
+  /// The same file, with the name that older versions gave to it.
   std::string old_attribution(JobId id) const { return job(id) + "/credits"; }
 
  private:

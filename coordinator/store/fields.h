@@ -39,7 +39,8 @@ class FieldReader {
   /// Returns the status. DATA_LOSS: a field is missing, malformed, out of range, or left over at
   /// the end.
   absl::Status finish();
-  /// Sets the error, for a reason found by the caller.
+  /// Sets the status to DATA_LOSS with this reason, unless it is an error already. For errors that
+  /// only the caller can find.
   void refuse(std::string reason);
 
  private:

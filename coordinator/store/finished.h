@@ -1,7 +1,7 @@
 #pragma once
 
-// The results of a finished job. The film's thread, which adds the bands of jobs to their images,
-// hands the results to the store.
+// The results of a finished job. The film's thread, which adds the bands of jobs (ranges of rows
+// and samples, rendered by workers) to their images, hands the results to the store.
 
 #include <optional>
 #include <vector>

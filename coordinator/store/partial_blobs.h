@@ -1,7 +1,8 @@
 #pragma once
 
-// Blobs whose upload was interrupted: one file each with the bytes received, so that the sender can
-// resume. The bytes are not verified until the blob is complete and its digest is checked.
+// Blobs (pieces of scene data) whose upload was interrupted. For each of them, one file keeps the
+// bytes received, so that the sender can resume. The bytes are not verified until the blob is
+// complete and its digest is checked.
 // Thread-safe; calls may block on the disk.
 
 #include <cstdint>
@@ -57,7 +58,8 @@ class PartialBlobs {
   explicit PartialBlobs(std::string folder) : folder_(std::move(folder)) {}
   std::string path_of(const wire::Digest& digest) const;
   void release(const Claim& claim) EXCLUDES(mutex_);
-  /// Removes the oldest files that exceed wire::kPartialBlobs or wire::kPartialBytes.
+  /// Goes through the files from the newest to the oldest. Removes each file with which their
+  /// number would exceed wire::kPartialBlobs or their bytes would exceed wire::kPartialBytes.
   void trim() REQUIRES(mutex_);
 
   const std::string folder_;

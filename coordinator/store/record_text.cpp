@@ -38,6 +38,7 @@ absl::string_view name_of(JobState state) {
   return "";
 }
 
+/// Reads a field with the name of a state. If the name is unknown, sets the error of `in`.
 JobState state_field(FieldReader& in, absl::string_view name) {
   const std::string found = in.text(name);
   for (const StateName& s : kStates) {
@@ -101,6 +102,7 @@ Record read_summary(FieldReader& in) {
       .counters = read_counters(in)};
 }
 
+/// Reads the fields of a record of this kind. If the kind is unknown, sets the error of `in`.
 Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "job_added") {
     return read_job(in);

@@ -23,7 +23,7 @@ void write_stored(FieldWriter& out, JobId job, const Band& band, WorkerProcessId
 // Braced initialisers are evaluated in the order in which they are written, which is the order of
 // the fields.
 
-/// Reads the output of write_stored(), which is all that a record BandAudited or BandLost has.
+/// Reads the output of write_stored(). The records BandAudited and BandLost have no other fields.
 template <class R>
 R read_stored(FieldReader& in) {
   return {.job = in.number("job"),

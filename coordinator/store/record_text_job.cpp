@@ -80,7 +80,8 @@ FrameNumber read_number(FieldReader& in) {
          kMaxFrameNumber;
 }
 
-/// Journals of schema versions below 10 lack this field.
+/// Reads the size of the scene package. Returns 0 (unknown) for journals of schema versions below
+/// 10, which lack this field.
 std::uint64_t read_package_bytes(FieldReader& in) {
   return in.next_is("package_bytes") ? in.number("package_bytes") : 0;
 }

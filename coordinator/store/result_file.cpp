@@ -1,5 +1,5 @@
-// A result is a header with size and SHA-256, followed by the pixels. It is written to a staged
-// file, which gets its name when it is complete.
+// A result is a header with size and SHA-256, followed by the pixels. It is written to a file with
+// a temporary name. The file gets its final name when all of it is on disk.
 
 #include "coordinator/store/result_file.h"
 

@@ -25,7 +25,8 @@ struct StoredResult {
   Display display = {};  ///< the scene's display settings; not in the file
 };
 
-/// Writes the file atomically. OK: it is on disk in `folder` as `path`.
+/// Writes the file `path` atomically. `folder`: the folder that contains it. OK: the file is on
+/// disk.
 absl::Status write_result(const Image& image, const std::string& folder, const std::string& path);
 
 /// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.

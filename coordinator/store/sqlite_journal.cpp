@@ -142,7 +142,7 @@ absl::Status SqliteJournal::append(absl::Span<const Record> records) {
 
 absl::Status SqliteJournal::rewrite(absl::Span<const Record> records) {
   RETURN_IF_ERROR(transact("DELETE FROM record;", records, 0));
-  // Frees the space; if that fails, later records reuse it.
+  // Frees the space of the deleted records. If this fails, later records reuse the space.
   execute("PRAGMA wal_checkpoint(TRUNCATE);").IgnoreError();
   execute("VACUUM;").IgnoreError();
   return absl::OkStatus();
