@@ -77,7 +77,7 @@ absl::Status check_post(const HttpRequest& request) {
 }
 
 /// Returns true for requests that need no login: the page, its files, the workers' programs, the
-/// login itself, and all requests below /join. The handlers of /join check their requests.
+/// login itself, and all requests below /join, which are checked by the handlers of /join.
 bool is_open(const HttpRequest& request) {
   return request.path == "/api/login" ||
          (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));

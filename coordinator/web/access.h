@@ -1,8 +1,9 @@
 #pragma once
 
 // Access control of the dashboard. Everybody who can reach the port may read the pages, their files
-// and the workers' programs. The handlers of /join, for browsers that render, check their requests.
-// All other requests except the login itself need a login. A POST from a page of another site is
+// and the workers' programs. Requests below /join (of browsers that render) are checked by their
+// own handlers. All other requests except the login itself need a login. A login needs the users'
+// secret; the secret with which workers join is refused. A POST from a page of another site is
 // refused.
 
 #include <string>
@@ -27,7 +28,8 @@ class Access {
   /// own name.
   Access(link::Identity identity, bool secure, std::string host);
 
-  /// Invalidates logins with earlier secrets. Returns true if the users' secret has changed.
+  /// Replaces the secrets by those in `identity`. Logins with an earlier users' secret become
+  /// invalid. Returns true if the users' secret has changed.
   bool renew(link::Identity identity) EXCLUDES(mutex_);
 
   /// Checks a request. INVALID_ARGUMENT: the method is not GET, HEAD or POST. PERMISSION_DENIED:

@@ -1,4 +1,5 @@
-// Keeps the leases of each browser, and decides by them which scenes' blobs browsers may read and
+// Keeps the leases of each browser. A lease assigns a band (a range of rows and samples) to a
+// browser. From the leases it follows which blobs (pieces of scene data) browsers may read, and
 // which bands a browser may send.
 
 #include "coordinator/web/browser_leases.h"

@@ -1,4 +1,5 @@
-// The handlers of /api/link: show, make and revoke the link by which browsers join as workers.
+// The handlers of /api/link show, make and revoke the link by which browsers join as workers. The
+// handler of /api/link.svg shows the link as a QR code.
 
 #include "coordinator/web/qr_code.h"
 #include "coordinator/web/reply.h"
@@ -9,6 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the message that describes the link. If there is no link, none of its fields is set.
 web::BrowserLink link_message(const std::optional<BrowserAccess::Link>& link) {
   web::BrowserLink message;
   if (link) {
@@ -18,6 +20,8 @@ web::BrowserLink link_message(const std::optional<BrowserAccess::Link>& link) {
   return message;
 }
 
+/// Makes a link that is valid for the time in `body`, a MakeBrowserLink in JSON, or for the
+/// standard time if that time is 0. Returns the message that describes the link.
 absl::StatusOr<web::BrowserLink> make_link(BrowserAccess& access, const HttpBody& body) {
   web::MakeBrowserLink wanted;
   RETURN_IF_ERROR(read_json(body, wanted));

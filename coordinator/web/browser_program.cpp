@@ -1,4 +1,5 @@
-// Reads bandsaw.wasm and, if it exists, its form compressed by Brotli.
+// Reads bandsaw.wasm, and bandsaw.wasm.br if that file exists (the same program compressed by
+// Brotli).
 
 #include "coordinator/web/browser_program.h"
 

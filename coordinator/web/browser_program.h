@@ -1,6 +1,7 @@
 #pragma once
 
-// The renderer for browsers: WebAssembly that the page /join loads. `serve` reads it at its start.
+// The renderer for browsers: a WebAssembly program that the page /join loads. `bandsaw serve` reads
+// the program's files once, when the server starts.
 
 #include <string>
 
@@ -16,8 +17,8 @@ struct BrowserProgram {
   std::string tag;         ///< SHA-256 of `bytes` in hexadecimal
 };
 
-/// Reads the files in the folder. NOT_FOUND: there is no bandsaw.wasm. Other errors: it cannot be
-/// read.
+/// Reads the files in the folder. NOT_FOUND: there is no bandsaw.wasm. Other errors: a file cannot
+/// be read.
 absl::StatusOr<BrowserProgram> load_browser_program(const std::string& folder);
 
 }  // namespace bandsaw::coordinator

@@ -87,8 +87,8 @@ std::string offered_secret(const HttpRequest& request) {
 }  // namespace
 
 /// One session. The base class has the protocol and the queue of messages; this class has the
-/// WebSocket. Its members are used by the thread of `io` only, except where the base class says
-/// otherwise. The engine may keep the object for a while after the server was destroyed.
+/// WebSocket. The members of this class are used by the thread of `io` only, except where the base
+/// class says otherwise. The engine may keep the object for a while after the server was destroyed.
 class BrowserSocket final : public WorkerSession,
                             public std::enable_shared_from_this<BrowserSocket> {
  public:
@@ -221,12 +221,13 @@ class BrowserSocket final : public WorkerSession,
   void cut_after(std::chrono::milliseconds time) {
     timer_.expires_after(time);
     timer_.async_wait([self = shared_from_this()](ErrorCode) {
-      if (self->timer_.expiry() <= Clock::now()) {  // it may have been set again meanwhile
+      if (self->timer_.expiry() <= Clock::now()) {  // false: timer_ was set again meanwhile
         self->cut();
       }
     });
   }
 
+  /// Ends the session: cuts the connection, frees its place, and calls gone_.
   void end() {
     timer_.expires_at(Clock::time_point::max());
     cut();

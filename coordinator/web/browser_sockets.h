@@ -26,7 +26,8 @@ struct BrowserSocketLimits {
   std::chrono::milliseconds write{10'000};
   /// Bytes that the system keeps for a browser that does not read.
   int send_buffer = 64 << 10;
-  /// Interval at which the sessions' link is checked.
+  /// Interval at which the server checks that the link with which each session joined is still
+  /// valid.
   std::chrono::milliseconds link_check{500};
   /// Time in which the sessions may close when the server stops.
   std::chrono::milliseconds stop{1'000};
@@ -39,9 +40,9 @@ inline constexpr char kJoinProtocol[] = "bandsaw.1";
 inline constexpr char kJoinSecretPrefix[] = "bandsaw.secret.";
 
 /// Thread-safe. Each message is one serialised farm.FromWorker or farm.ToWorker, with the rules of
-/// Work.Session. A session is closed with the code 1008 for a violation, 1001 when the coordinator
-/// stops, 4401 when the link has ended or was revoked, 4409 when the scheduler ended the session
-/// (the browser may join again), 1013 for a browser that does not read.
+/// Work.Session. A session is closed with the code 1008 if the browser broke these rules, 1001 when
+/// the coordinator stops, 4401 when the link has ended or was revoked, 4409 when the scheduler
+/// ended the session (the browser may join again), 1013 for a browser that does not read.
 class BrowserSockets {
  public:
   /// The arguments outlive the object.

@@ -1,5 +1,6 @@
-// For each clean picture: submits the jobs of its guides (images of albedo and shape, from which
-// the denoiser learns where edges are), waits until they are done, and runs the filter.
+// A clean picture is the denoised image of a job. Its guides are images of albedo and shape, from
+// which the denoiser learns where edges are. For each clean picture, submits the jobs that render
+// the guides, waits until these jobs are done, and runs the filter (the denoiser).
 
 #include "coordinator/web/clean_pictures.h"
 
@@ -25,7 +26,7 @@ constexpr std::size_t kMaxKept = 4;
 /// Bytes that the filter needs for each pixel (renderlib/denoise/README.md).
 constexpr std::uint64_t kFilterBytes = 400;
 
-/// FAILED_PRECONDITION: the image of this job cannot be cleaned here, or not yet.
+/// Returns OK if the image of this job can be cleaned here now, else FAILED_PRECONDITION.
 absl::Status check(const JobView& job) {
   if (job.state != JobState::kDone) {
     return absl::FailedPreconditionError(
@@ -41,10 +42,10 @@ absl::Status check(const JobView& job) {
                    job.id, " --denoise -o FILE`"));
 }
 
-/// Returns for each pixel the share of its samples that is in the first part, with which the
-/// denoiser estimates errors. `counts`: the numbers of samples of an adaptive job's pixels. An
-/// image of at most 8 samples has no parts. For such an image, an additional job renders half of
-/// the samples.
+/// The denoiser estimates errors from the first part of each pixel's samples. Returns for each
+/// pixel the share of its samples that is in this part. `counts`: the numbers of samples of an
+/// adaptive job's pixels. An image of at most 8 samples has no parts. For such an image, an
+/// additional job renders half of the samples.
 std::vector<float> shares_of(const JobView& job, const std::optional<HeldImage>& counts,
                              std::size_t pixels) {
   if (counts) {
@@ -196,7 +197,7 @@ absl::StatusOr<CleanPictures::Kept> CleanPictures::filtered(const JobView& job,
                            .shape = std::move(shape.result.image)};
   Pool pool(1);
   Kept kept{denoise(input, kernels().front()->fit, pool), image.result.display, *std::move(share)};
-  kept.share.resize(2 * pixels * sizeof(Rgb));  // of the clean image and its error
+  kept.share.resize(2 * pixels * sizeof(Rgb));  // for the clean image and its error
   return kept;
 }
 
