@@ -82,8 +82,8 @@ void measure(Worker& worker, Job& job, const input::BandStored& in) {
   }
   // Mean number of pixel samples in a row. The time is divided by it, because RowTimes::measure()
   // expects the time of one pixel sample in each row of the band.
-  const double columns = static_cast<double>(samples) / in.band.rows.count();
-  job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
+  const double row_samples = static_cast<double>(samples) / in.band.rows.count();
+  job.row_times.measure(in.band.rows, in.render_s * worker.threads / row_samples);
 }
 
 }  // namespace bandsaw::coordinator
