@@ -50,6 +50,8 @@ class Access {
   void log_out(const HttpRequest& request, HttpReply& reply) const;
 
  private:
+  /// Checks that the request has a valid cookie, or the users' secret as bearer_secret(). Errors as
+  /// check().
   absl::Status check_login(const HttpRequest& request) EXCLUDES(mutex_);
   /// Checks that this is the users' secret. `address`: the sender's address. Errors as log_in().
   absl::Status check_secret(const std::string& secret, const std::string& address) REQUIRES(mutex_);

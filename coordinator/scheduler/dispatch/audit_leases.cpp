@@ -11,6 +11,8 @@
 namespace bandsaw::coordinator {
 
 bool AuditLeases::may_render(const Worker& worker, const Job& job, const Audit& audit) const {
+  // Returns true if the worker `one` may render the band, as long as the results that its machine
+  // has returned are not considered.
   const auto able = [&](const Worker& one) {
     return one.eligible() && eligibility_.may_audit(one, job) &&
            !audit.unable.contains(one.machine()) &&

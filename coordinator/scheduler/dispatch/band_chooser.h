@@ -66,6 +66,8 @@ class BandChooser {
  private:
   std::optional<Band> next_probe(Job& job, const Worker& worker) const;
   std::optional<Band> first_free(const Job& job, const Worker& worker) const;
+  /// Returns the band that sized() returns, but changed so that suspect rows (rows that a worker
+  /// held when it was lost) and other rows are never in one band.
   Band cut(const Job& job, const Worker& worker, const Band& free) const;
 
   const Context& context_;

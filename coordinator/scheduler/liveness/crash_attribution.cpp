@@ -82,6 +82,8 @@ void CrashAttribution::worker_lost(const Worker& worker, const std::vector<HeldB
   }
 }
 
+/// Makes the band suspect, and fails the job if enough workers were lost at the band. A band that
+/// is suspect for the first time is retried in pieces.
 void CrashAttribution::add_suspicion(Job& job, const Worker& worker, const HeldBand& held) {
   const bool suspect = job.is_suspect(held.band);
   const std::uint32_t rows = held.band.rows.count();

@@ -100,6 +100,8 @@ class Audit {
   std::set<std::string> unable;  ///< machines in `given` that could not render it
 
  private:
+  /// Returns the verdict if `right` is known to be right: all results that differ from it are
+  /// wrong.
   Verdict verdict_for(const Result& right) const;
   /// Returns the index of the machine's result, or results_.size().
   std::size_t index_of(const Reporter& reporter) const;

@@ -30,6 +30,7 @@ bool siblings(const SampleRange& left, const SampleRange& right) {
          left.first_block() % (2 * left.blocks()) == 0;
 }
 
+/// Appends `more` to ascending ranges of rows. Extends the last range if `more` begins at its end.
 void append_rows(std::vector<RowRange>& rows, const RowRange& more) {
   if (!rows.empty() && rows.back().last == more.first) {
     rows.back().last = more.last;
@@ -107,6 +108,7 @@ void Coverage::join(const RowRange& rows) {
   }
 }
 
+/// Returns true if some sample of `node` is stored in the strip.
 bool Coverage::stored_in(const Strip& strip, const SampleRange& node) {
   return std::any_of(strip.cells.begin(), strip.cells.end(), [&](const Cell& cell) {
     return cell.owner == kStored && overlap(cell.node, node);
@@ -268,6 +270,7 @@ bool Coverage::holds(const Band& band, LeaseId lease) const {
   return false;
 }
 
+/// Returns the samples of the first free cell of the strip; std::nullopt: no cell is free.
 std::optional<SampleRange> Coverage::free_in(const Strip& strip) {
   const auto cell = std::find_if(strip.cells.begin(), strip.cells.end(),
                                  [](const Cell& c) { return c.owner == kFree; });

@@ -45,6 +45,7 @@ class RowDigests {
 
   /// Returns the digest of a row over these samples; std::nullopt: unknown.
   std::optional<std::uint64_t> of(const SampleRange& samples, std::uint32_t row) const;
+  /// Forgets the digests of exactly the band's samples in the band's rows.
   void forget(const Band& band);
   void clear() { known_.clear(); }
 

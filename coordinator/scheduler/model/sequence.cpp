@@ -50,9 +50,10 @@ const Sequence::Frame* Sequence::next_to_retry() const {
 
 JobSpec Sequence::job_spec(const Frame& frame) const {
   JobSpec job;
-  // Which bands are audited follows from the request id (model/audit.h), and workers must not be
-  // able to predict it. Workers cannot guess this id, because they do not know the request id of
-  // the sequence. Submitters cannot choose such an id, because they may not use '/'.
+  // Which bands are audited (rendered a second time, to compare) follows from the request id, and
+  // workers must not be able to predict which. Workers cannot guess this request id, because they
+  // do not know the request id of the sequence. Submitters cannot choose such an id, because they
+  // may not use '/'.
   job.request_id = absl::StrCat("sequence/", id, "/", spec.request_id, "/", frame.number);
   job.name = absl::StrCat(spec.name, " frame ", frame.number);
   job.manifest = frame.manifest;

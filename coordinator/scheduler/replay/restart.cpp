@@ -23,6 +23,7 @@ void Restart::add_band(const input::BandStored& band) {
       context_.quarantine.contains(reporter.process)) {
     return;
   }
+  // True if no band that was added before stored any of these rows.
   const bool is_new = pass->coverage.wanted(band.band) == std::vector<RowRange>{band.band.rows};
   const Coverage::Change change = bands_.store(*job, *pass, band, reporter);
   comparison_.open_audits(*job, band, reporter, change.rows);

@@ -371,6 +371,8 @@ std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time n
   return lines;
 }
 
+/// Returns sentences about the job's state. For a running job, they say who works on it, what it
+/// waits for, how long it still needs, and why other workers do not work on it.
 std::vector<std::string> Views::why_of_state(const Job& job, Time now) const {
   const auto with_reason = [&](const char* what) {
     return absl::StrCat(what, job.reason.empty() ? "" : ": ", job.reason);
