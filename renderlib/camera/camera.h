@@ -93,8 +93,8 @@ const Shutter& shutter_of(const Camera& camera);
 /// Returns INVALID_ARGUMENT with the reason if the camera cannot generate rays.
 absl::Status validate(const Camera& camera);
 
-/// Returns INVALID_ARGUMENT if the two cameras cannot be one that moves: they differ in kind or
-/// shutter, one has a lens and the other is a pinhole, or the second one is not valid.
+/// Returns INVALID_ARGUMENT if the two cameras cannot be the two ends of one moving camera: they
+/// differ in kind or shutter, only one of them has a lens, or `at_close` is not valid.
 absl::Status validate_motion(const Camera& at_open, const Camera& at_close);
 
 /// A camera prepared for an image of a given size, so that a ray costs only a few multiplications.
@@ -120,7 +120,8 @@ class RayGenerator {
   /// The camera at one time.
   struct Projection {
     Vec3 origin;  ///< orthographic: the direction of all rays
-    /// Direction through image position (0, 0), not normalised; orthographic: the ray origin there.
+    /// Direction through image position (0, 0), not normalised; orthographic: the origin of the ray
+    /// at this position.
     Vec3 corner;
     Vec3 dx;      ///< change of `corner` per pixel to the right
     Vec3 dy;      ///< change of `corner` per pixel down

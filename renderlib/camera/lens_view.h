@@ -15,9 +15,9 @@ namespace bandsaw {
 class LensView {
  public:
   /// Describes a round lens of `radius` > 0 around `middle`, perpendicular to the unit vector
-  /// `forward`, whose plane of focus is at `distance` > 0. The point in focus is middle + distance
-  /// * direction, so the component of `direction` along `forward` MUST be 1. Returns std::nullopt
-  /// if the radius is not less than the distance from `middle` to that point.
+  /// `forward`. The plane of focus is at `distance` > 0 from the lens. The point in focus is middle
+  /// + distance * direction, so the component of `direction` along `forward` MUST be 1. Returns
+  /// std::nullopt if the radius is not less than the distance from `middle` to the point in focus.
   static std::optional<LensView> make(const Vec3& middle, const Vec3& forward, double radius,
                                       double distance, const Vec3& direction);
 
@@ -26,8 +26,8 @@ class LensView {
   /// Returns a cone that contains all directions in which rays continue beyond the point in focus.
   const Cone& beyond() const { return beyond_; }
 
-  /// Returns the point on the lens where a ray starts that passes through the point in focus in the
-  /// unit direction `direction`. Returns std::nullopt if the line of the ray misses the lens.
+  /// Returns the point of the lens at which a ray must start to pass through the point in focus in
+  /// the unit direction `direction`. Returns std::nullopt if the line of the ray misses the lens.
   std::optional<Vec3> on_lens(const Vec3& direction) const;
   /// Returns the pdf, by solid angle, of a ray's direction, if the ray starts at a uniformly
   /// sampled point of the lens and passes through the point in focus. `direction` MUST be the unit

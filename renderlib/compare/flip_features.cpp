@@ -20,8 +20,8 @@ struct Features {
 };
 
 // Scales the positive weights to the sum 1 and the negative ones to the sum -1, so that a feature's
-// strength is in units of contrast. `across` is the sum of the weights along the other axis; the
-// result is divided by it, because those weights are not normalised.
+// strength is in units of contrast. `across` is the sum of the weights along the other axis. These
+// weights are not normalised, so the result is divided by `across`.
 FilterWeights balanced(FilterWeights kernel, double across) {
   double above = 0;
   double below = 0;
@@ -34,6 +34,7 @@ FilterWeights balanced(FilterWeights kernel, double across) {
   return kernel;
 }
 
+// Returns the luminance of each pixel, relative to white.
 Plane gray_of(const Image& image) {
   Plane gray(image.width, image.height);
   std::transform(image.pixels.begin(), image.pixels.end(), gray.values.begin(),
@@ -41,6 +42,7 @@ Plane gray_of(const Image& image) {
   return gray;
 }
 
+// Returns the length of the vector (x, y) for each pixel.
 Plane length(const Plane& x, const Plane& y) {
   Plane out(x.width, x.height);
   for (std::size_t i = 0; i < out.values.size(); ++i) {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kC1 = 0.01 * 0.01;
 constexpr double kC2 = 0.03 * 0.03;
 
+// Returns the sRGB-coded luminance of each pixel, in [0, 1].
 Plane gray_of(const Image& image) {
   Plane gray(image.width, image.height);
   std::transform(image.pixels.begin(), image.pixels.end(), gray.values.begin(),

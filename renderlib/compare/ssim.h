@@ -7,7 +7,7 @@
 
 namespace bandsaw {
 
-/// Returns the mean SSIM over all pixels. The SSIM is that of the sRGB-coded luminance in [0, 1],
+/// Returns the mean SSIM over all pixels. It is computed from the sRGB-coded luminance in [0, 1],
 /// with a Gaussian window of standard deviation 1.5 and radius 5. The result is 1 for equal images,
 /// and at least -1 for any images. The images MUST have the same size.
 double ssim(const Image& image, const Image& reference);

@@ -75,6 +75,7 @@ std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers&
   return sphere(center, kRadius, "glass");
 }
 
+/// Returns 20 x 20 boxes of random heights, the ground of the last scene of the second book.
 std::string ground_of_boxes() {
   constexpr int kBoxesPerSide = 20;
   constexpr double kWidth = 100;
@@ -93,6 +94,7 @@ std::string ground_of_boxes() {
   return out;
 }
 
+/// Returns a group of 1000 spheres at random places in a cube, and the instance that places it.
 std::string cube_of_spheres() {
   constexpr int kSpheres = 1000;
   Numbers numbers(/*seed=*/2);
@@ -107,7 +109,7 @@ std::string cube_of_spheres() {
 
 constexpr absl::string_view kNextWeek =
     R"(# The last scene of "Ray Tracing: The Next Week" (Shirley, Black and Hollasch), chapter 10.
-# Made by bandsaw-gallery; its globe is made by the same.
+# Made by bandsaw-gallery, as is the map of the globe.
 camera { position: [478, 278, -600]  look_at: [278, 278, 0]  vertical_fov: 40  shutter_close: 1 }
 image { width: 800  height: 800 }
 integrator { max_depth: 40 }

@@ -2,8 +2,8 @@
 
 // The scenes of the "weekend" books (Shirley, Black and Hollasch, "Ray Tracing in One Weekend",
 // "Ray Tracing: The Next Week") that consist of hundreds of shapes at random places, as text. The
-// books use random numbers of the C library, but these scenes use SplitMix64. So the places of the
-// small shapes differ from those in the books.
+// books use random numbers of the C library. These scenes use those of SplitMix64
+// (base/split_mix.h), so the small shapes are at other places than in the books.
 
 #include <string>
 

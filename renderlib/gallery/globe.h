@@ -1,6 +1,6 @@
 #pragma once
 
-// A map of an invented planet, which the scenes gallery/study/texture_* wrap around a sphere.
+// A map of an invented planet. The scenes gallery/study/texture_* wrap the map around a sphere.
 
 #include <cstdint>
 #include <vector>

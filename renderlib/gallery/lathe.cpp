@@ -33,7 +33,7 @@ struct Rings {
 };
 
 /// Returns the rings of the profile. Two pieces that meet at less than 40 degrees share a ring,
-/// with the mean of their normals. At a sharper edge each piece has a ring of its own.
+/// with the mean of their normals. At a sharper edge the two pieces do not share a ring.
 Rings rings_of(absl::Span<const Vec2> profile) {
   constexpr double kSmooth = 0.766;  // the cosine of 40 degrees
   std::vector<Vec2> normals;
@@ -57,6 +57,8 @@ Rings rings_of(absl::Span<const Vec2> profile) {
   return out;
 }
 
+/// Adds the vertices of a ring. The first vertex and the last one are at the same place, but differ
+/// in uv.
 void append_ring(std::string& out, const Ring& ring, int around) {
   for (int i = 0; i <= around; ++i) {
     const double turn = static_cast<double>(i) / around;

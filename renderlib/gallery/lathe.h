@@ -11,7 +11,8 @@
 namespace bandsaw::gallery {
 
 /// Returns a Wavefront OBJ of the profile rotated around the y axis. The x of a point is its
-/// radius, >= 0, and its y is the height. A profile that goes up has its outside to the right.
+/// radius, >= 0, and its y is the height. The outside of the surface is to the right of the
+/// direction of the profile, if the radius is drawn to the right and the height upwards.
 /// Edges sharper than 40 degrees stay sharp, and other edges have smooth normals. uv is (turn,
 /// share of the profile's length). The profile MUST have at least two points, and consecutive
 /// points MUST differ. `around`, >= 3, is the number of faces of a ring.

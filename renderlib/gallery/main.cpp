@@ -39,6 +39,7 @@ absl::Status make_open_folder(const std::string& path) {
                                                            : errno_status(errno, path);
 }
 
+/// Writes the file, and prints its path to standard output.
 absl::Status write(const std::string& path, absl::Span<const std::byte> bytes) {
   RETURN_IF_ERROR(write_file_atomically(path, bytes));
   std::puts(path.c_str());
@@ -48,6 +49,7 @@ absl::Status write(const std::string& path, const std::string& text) {
   return write(path, std::as_bytes(std::span(text)));
 }
 
+/// Generates all files below `folder`.
 absl::Status make_all(const std::string& folder) {
   Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   const std::string study = folder + "/study";
