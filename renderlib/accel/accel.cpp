@@ -72,7 +72,8 @@ constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 /// BVHs of meshes, keyed by the mesh.
 using KnownTrees = std::map<const Mesh*, std::shared_ptr<const MeshTree>>;
 
-/// If `culls` is false, rays will test all primitives (disable_culling.h).
+/// Builds the BVH of a mesh. If `culls` is false, rays will test all primitives
+/// (disable_culling.h).
 MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
   MeshTree tree = build_mesh_tree(mesh, pool);
   if (!culls) {

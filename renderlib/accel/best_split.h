@@ -51,6 +51,7 @@ class Binning {
 /// Bounding boxes and item counts of a range, for each bin of each axis.
 class Bins {
  public:
+  /// Adds each item to its bin on each axis.
   void add(absl::Span<const TreeItem> items, const Binning& binning);
   /// Adds the items of other bins, which MUST have the same Binning.
   void add(const Bins& other);
@@ -67,8 +68,9 @@ class Bins {
   Rows<std::uint32_t> count_ = {};
 };
 
-/// Copies the items that go left to consecutive places from to[0] on, and the others from to[1] on,
-/// preserving their order. Returns for each side the bounding box of twice_centre() of its items.
+/// Copies the items that go left to consecutive places from to[0] on, and the items that go right
+/// to consecutive places from to[1] on. The items of each side keep their order. Returns for each
+/// side the bounding box of twice_centre() of its items.
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
                             const Split& split, std::array<TreeItem*, 2> to);
 

@@ -80,7 +80,8 @@ class Level {
     }
   }
 
-  /// Divides all ranges and links their nodes to the new children.
+  /// Divides all ranges, and appends the nodes of the parts to `nodes`, as children of the ranges'
+  /// nodes. Returns the parts with their nodes.
   std::vector<Task> next(Pool& pool, std::vector<BinaryNode>& nodes) {
     for_each(pool, [&](Partition& partition, Partition::Piece& piece) { partition.bin(piece); });
     for (Partition& partition : partitions_) {
@@ -104,6 +105,7 @@ class Level {
   }
 
  private:
+  /// Calls body(partition, piece) for each piece of each range, in parallel.
   void for_each(Pool& pool, absl::FunctionRef<void(Partition&, Partition::Piece&)> body) {
     pool.parallel_for(static_cast<std::int64_t>(pieces_.size()), [&](std::int64_t i) {
       const auto piece = static_cast<std::size_t>(i);
@@ -177,7 +179,7 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   } else {
     build_task(0);
   }
-  // The items are freed early, because grafting needs as much memory again as the nodes.
+  // The items are freed before grafting, which holds the nodes of the subtrees in memory twice.
   items = {};
   other = {};
   std::size_t nodes = tree.nodes.size();

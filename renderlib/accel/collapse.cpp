@@ -100,8 +100,8 @@ void Collapse::set_costs(std::size_t index) {
 /// `slots` (>= 1) slots.
 void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
   const BinaryNode& node = tree_.nodes[index];
-  // Takes fewer slots if the cost is the same. build() passes kSlots to divide the subtree into the
-  // children of a wide node of its own, so this number must not be reduced.
+  // Takes fewer slots if the cost is the same. If `slots` is kSlots, it is not reduced, because
+  // build() then divides the subtree into the children of a new wide node.
   while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {
     --slots;
   }

@@ -13,7 +13,8 @@ namespace {
 // The number is finite, because infinite planes would give NaN for rays parallel to them.
 constexpr float kFarthest = std::numeric_limits<float>::max();
 
-/// Returns whether the node has this child: an unused child has empty bounds and keeps them.
+/// Returns whether the slot `child` of the node is used. An unused slot has empty bounds (lo > hi),
+/// which are not changed.
 bool used(const WideNode& node, std::size_t child) {
   return node.bounds[0][child] <= node.bounds[3][child];
 }

@@ -1,7 +1,8 @@
 #pragma once
 
-// Conservative float test of a ray against eight triangles: a triangle that it rejects would be
-// rejected by the double test as well. README.md, "Triangles", derives the bounds.
+// Conservative float test of a ray against eight triangles: if the float test rejects a triangle,
+// the exact test in double precision would reject it as well. README.md, "Triangles", derives the
+// bounds.
 
 #include "renderlib/accel/flat_pack.h"
 #include "renderlib/accel/float_ray.h"
@@ -15,7 +16,7 @@ namespace bandsaw {
 inline constexpr float kWeightError = 26 * 0x1p-24f;
 /// Bound of the relative rounding error of `volume`, and of the distance times `volume`.
 inline constexpr float kDistanceError = 24 * 0x1p-24f;
-/// This share of a length covers the rounding of the double test.
+/// kDoubleError times a length covers the rounding of the double test.
 inline constexpr float kDoubleError = 0x1p-27f;
 
 /// Eight vectors. about_fused(a, b, c) is a b + c, and about_fused_minus(a, b, c) is a b - c; both

@@ -62,8 +62,8 @@ void FlatPacker::add_moving(const Corners& at_open, const Corners& at_close,
   store(at_close, count_, to);
   add(at_open, primitive);
   // Edges change linearly, so the largest absolute component occurs at one of the two ends. The
-  // second term covers the rounding of an edge's two corners. For each corner it is at most 2u of
-  // the largest coordinate.
+  // second term covers the rounding of an edge's two corners. The rounding of one corner is at most
+  // 2u times the largest coordinate.
   pack_.size = std::max(pack_.size, (std::max(longest(at_open), longest(at_close)) +
                                      std::max(reach_of(at_open), reach_of(at_close)) * 0x1p-21f) *
                                         (1 + 0x1p-20f));

@@ -17,9 +17,11 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 /// The number u of README.md: the largest relative error when a number is rounded to float.
 constexpr double kUnit = 0x1p-24;
-/// Above this, products of four lengths, as in the triangle filter, may overflow float.
+/// If lengths exceed kLargest, the product of four lengths, as in the triangle filter, may overflow
+/// float.
 constexpr double kLargest = 0x1p30;
-/// Above this, the product of a length and kSteepest, as in the box test, may overflow float.
+/// If a length exceeds kLargestBox, its product with kSteepest, as in the box test, may overflow
+/// float.
 constexpr double kLargestBox = 0x1p60;
 /// Largest factor of the box test, 1 / a component of the scaled direction. A larger factor, which
 /// may be infinite, is replaced by this number.

@@ -51,6 +51,7 @@ class Bounds {
     return all;
   }
 
+  /// Sets the bounds of child `i` of the node, and their changes, from the box of the child.
   void set_child(std::uint32_t node, std::size_t i, const MovingBox& box) {
     for (int k = 0; k < 3; ++k) {
       const auto row = static_cast<std::size_t>(k);

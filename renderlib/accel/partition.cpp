@@ -1,5 +1,6 @@
 // A range of items (boxes with the number and kind of what they contain) is split at the cheapest
-// plane. If there is none, it is split by the kind of its items, or in halves at the median.
+// plane. If no plane separates the items, the range is split by the kind of its items, or in halves
+// at the median.
 
 #include "renderlib/accel/partition.h"
 
@@ -29,8 +30,9 @@ bool must_split(absl::Span<const TreeItem> items) {
          (items.size() > 1 && items.front().kind == LeafKind::kInstance);
 }
 
-/// Returns true if the range must be halved because of the maximum depth: halving takes log2(count)
-/// levels, separating the kinds takes two more, and no more levels than these are left.
+/// Returns true if the range must be halved from here on, because the tree may not become deeper
+/// than kMaxTreeDepth. Halving takes log2(count) levels, and separating the kinds takes two more.
+/// The range is deep if no more levels than that are left.
 bool is_deep(const Range& range) {
   return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxTreeDepth;
 }

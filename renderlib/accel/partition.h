@@ -60,6 +60,8 @@ class Partition {
   void parts(Range& left, Range& right) const;
 
  private:
+  /// Returns the cheapest split. The cost is infinite if no plane separates the items, or if the
+  /// range must be halved.
   Split find_split() const;
   bool has_plane() const;
   void part_without_plane(Range& left, Range& right) const;

@@ -25,7 +25,7 @@ std::array<Triangle, 2> halves(const Quad& quad) {
           Triangle{quad.corner, opposite, quad.corner + quad.v, {}}};
 }
 
-/// Returns a sphere that every ray which hits the disk also hits.
+/// Returns a sphere around the disk. Every ray that hits the disk also hits this sphere.
 Sphere around(const Disk& disk) { return {disk.center, disk.radius, disk.material}; }
 
 }  // namespace

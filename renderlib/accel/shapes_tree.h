@@ -33,10 +33,11 @@ struct ShapesTree {
 /// number (geometry/shapes.h), plus one for the second half of a quad.
 class ShapeItems {
  public:
-  /// Both MUST outlive this object.
+  /// `shapes` and `tree` MUST outlive this object.
   ShapeItems(const Shapes& shapes, ShapesTree& tree) : shapes_(shapes), tree_(tree) {}
 
-  /// Appends an item for each shape that can be hit, and enlarges the tree's box by it.
+  /// Appends an item for each shape that can be hit (two for a quad), and enlarges the tree's box
+  /// by the boxes of these shapes.
   void add_all(TreeItems& items);
   /// Stores a leaf of shapes, which are all of one kind, as a pack and returns the reference to it.
   ChildRef make_leaf(const BinaryTree& tree, const BinaryNode& leaf);

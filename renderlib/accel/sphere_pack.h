@@ -1,8 +1,8 @@
 #pragma once
 
 // A leaf of a BVH: up to eight spheres in float, or the bounding spheres of up to eight disks. The
-// float test of a ray against them is conservative: what it rejects, the double test would reject
-// as well. README.md, "Spheres", derives the bounds.
+// float test of a ray against these spheres is conservative: if it rejects a sphere, the exact test
+// in double precision would reject the sphere as well. README.md, "Spheres", derives the bounds.
 
 #include <array>
 #include <cmath>

@@ -44,7 +44,7 @@ struct Prototypes {
 struct Placed {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as in PrimitiveId
-  bool identity = false;       ///< true if its space is the world's
+  bool identity = false;       ///< true if `to_object` is the identity
   Transform to_object;
 };
 

@@ -165,8 +165,9 @@ template <class Query>
   });
 }
 
-/// Traces a mesh that deforms, at the time of `world`, the ray before it was transformed. The
-/// function is not inlined, so that other meshes are faster.
+/// Traces a mesh that deforms. `world` is the ray in world space; its time selects the shape of the
+/// mesh. `ray` is the same ray in the space of the mesh. The function is not inlined, so that
+/// tracing a mesh that does not deform is faster.
 template <class Query>
 [[gnu::noinline]] bool trace_deforming(const MeshTree& mesh, const Interval& shutter,
                                        const TracedRay& ray, std::uint32_t instance,

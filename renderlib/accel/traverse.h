@@ -94,8 +94,8 @@ class TraversalStack {
     hits &= hits - 1;
     return entry(i);
   };
-  // Exchanges both if they are in the wrong order. It has no branch, because a branch would be
-  // unpredictable.
+  // Exchanges the two entries if they are in the wrong order. The code has no branch, because a
+  // branch would be unpredictable.
   const auto order = [](std::uint64_t& low, std::uint64_t& high) {
     const std::uint64_t change = (low ^ high) & (std::uint64_t{0} - std::uint64_t{high < low});
     low ^= change;

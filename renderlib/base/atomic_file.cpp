@@ -31,6 +31,7 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
+/// Writes all bytes to the descriptor `file`. Error messages begin with `what`.
 absl::Status write_all(int file, absl::Span<const std::byte> bytes, const std::string& what) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file, bytes.data(), bytes.size());
@@ -51,7 +52,7 @@ struct Temporary {
   std::string path;
 };
 
-/// Creates a new file in the folder of `path`. `what`, here and below, begins error messages.
+/// Creates a new file in the folder of `path`. Its error messages begin with `what`.
 /// README.md explains why mkstemp is not used.
 absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::string& what) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -67,7 +68,7 @@ absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::str
   return errno_status(EEXIST, absl::StrCat(what, ": too many files named *.part beside it"));
 }
 
-/// Writes and syncs the file, and closes it in any case.
+/// Writes and syncs the file, and closes it in any case. Error messages begin with `what`.
 absl::Status fill(int file, absl::Span<const std::byte> bytes, const std::string& what) {
   absl::Status status = write_all(file, bytes, what);
   if (status.ok() && ::fsync(file) != 0) {

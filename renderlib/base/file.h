@@ -28,8 +28,8 @@ bool is_unreadable(const absl::Status& status);
 /// An open file descriptor that closes itself.
 class File {
  public:
-  /// Opens a file with the `flags` of open(2); O_CLOEXEC is added. A new file has mode 0600. Here
-  /// and below, an error is that of errno_status() unless a comment says otherwise.
+  /// Opens a file with the `flags` of open(2); O_CLOEXEC is added. A new file has mode 0600. If a
+  /// comment names no other error, the functions of this file return that of errno_status().
   static absl::StatusOr<File> open(const std::string& path, int flags);
   /// Opens a file for reading; `flags` are further flags of open(2). Returns INVALID_ARGUMENT if it
   /// is not a regular file; does not wait for the writer of a pipe.

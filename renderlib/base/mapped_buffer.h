@@ -17,11 +17,11 @@ class MappedBuffer {
   /// Empty: size 0.
   MappedBuffer() = default;
 
-  /// Creates a buffer of `size` zero bytes, aligned to pages. With an empty `folder` the memory is
-  /// anonymous and allocated when it is first touched. Otherwise it is backed by a file in
-  /// `folder`, whose disk space is reserved now, so that touching it cannot fail later. Returns
-  /// RESOURCE_EXHAUSTED if there is no memory or disk space, and NOT_FOUND or PERMISSION_DENIED if
-  /// the folder cannot be used.
+  /// Creates a buffer of `size` zero bytes, aligned to pages. If `folder` is empty, the memory is
+  /// anonymous, and a page is allocated when it is first touched. Otherwise the memory is backed by
+  /// a file in `folder`. The disk space of the file is reserved now, so that an access to the
+  /// memory cannot fail later. Returns RESOURCE_EXHAUSTED if there is no memory or disk space, and
+  /// NOT_FOUND or PERMISSION_DENIED if the folder cannot be used.
   static absl::StatusOr<MappedBuffer> create(std::size_t size, const std::string& folder);
 
   MappedBuffer(MappedBuffer&& other) noexcept;
