@@ -1,8 +1,8 @@
 #pragma once
 
 // Converts between the messages of farm.proto and renderlib's values, for the coordinator, its
-// commands and the worker. Values from the network are not checked here: validate() of the value
-// does that.
+// commands and the worker. Nothing is checked here, so code that receives values from the network
+// must check them (validate() in renderlib/render).
 
 #include "proto/farm.pb.h"
 #include "renderlib/render/band.h"

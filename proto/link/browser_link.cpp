@@ -1,5 +1,6 @@
-// The link for browsers is kept in the file `browsers` of the data folder, which only its owner can
-// read: a heading, the secret and the time of its end.
+// The link for browsers is kept in the file `browsers` of the data folder. Only the owner of the
+// file can read it. The file has a heading, the secret of the link, and the time when the link
+// ends.
 
 #include "proto/link/browser_link.h"
 

@@ -1,5 +1,5 @@
-// Wrappers of OpenSSL's functions. Each wrapper frees what it allocates. If OpenSSL fails, it
-// returns an error.
+// Wrappers of OpenSSL's functions. Each wrapper frees what it allocates, and returns an error if
+// OpenSSL fails.
 
 #include "proto/link/certificate.h"
 
@@ -43,6 +43,7 @@ std::string text_of(const Bio& bio) {
   return {data, static_cast<std::size_t>(size)};
 }
 
+/// Returns null if `pem` is not a certificate.
 Certificate parse_certificate(const std::string& pem) {
   const Bio bio = memory_of(pem);
   return {PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr), &X509_free};
@@ -178,10 +179,10 @@ absl::Status check_key(const std::string& key_pem, const std::string& certificat
   const Key key(PEM_read_bio_PrivateKey(bio.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
   const Certificate certificate = parse_certificate(certificate_pem);
   if (key == nullptr || certificate == nullptr) {
-    return absl::InvalidArgumentError("its key or certificate cannot be read");
+    return absl::InvalidArgumentError("the private key or the certificate cannot be read");
   }
   if (X509_check_private_key(certificate.get(), key.get()) != 1) {
-    return absl::InvalidArgumentError("its key is not that of its certificate");
+    return absl::InvalidArgumentError("the private key does not belong to the certificate");
   }
   return absl::OkStatus();
 }

@@ -14,13 +14,17 @@
 namespace bandsaw::link {
 namespace {
 
-/// A frozen machine or a pulled cable is detected after kKeepaliveMs + kKeepaliveTimeoutMs.
+/// Time between two pings of a connection. A frozen machine or a pulled cable is detected after
+/// kKeepaliveMs + kKeepaliveTimeoutMs.
 constexpr int kKeepaliveMs = 2000;
-/// The server closes a connection that does not complete its handshake in this time, which frees
-/// its file descriptor.
+/// If a client does not complete the handshake within kHandshakeMs, the server closes the
+/// connection, so that its file descriptor becomes free.
 constexpr int kHandshakeMs = 10'000;
+/// Time within which a ping must be answered.
 constexpr int kKeepaliveTimeoutMs = 4000;
 
+/// Returns the settings of a channel. If `own_connection` is false, the channel may share its
+/// connection with other such channels.
 grpc::ChannelArguments channel_arguments(bool own_connection) {
   grpc::ChannelArguments args;
   args.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
@@ -53,6 +57,9 @@ Connected open_channels(const std::string& address,
   return connected;
 }
 
+/// Opens channels to `address` with TLS. `socket` is a connection to the same address; the server's
+/// certificate is fetched through it. UNAUTHENTICATED: the certificate does not have the digest
+/// `expected`.
 absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Digest& expected,
                                       Socket& socket, const Deadline& deadline) {
   absl::StatusOr<std::string> pem = fetch_certificate_pem(socket, deadline);
@@ -77,6 +84,8 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
   return open_channels(address, grpc::SslCredentials(options), /*tls=*/true);
 }
 
+/// Opens channels to `address` without TLS, and waits until the control channel is
+/// connected. UNAVAILABLE: the deadline has passed, or `deadline.stopped` returned true.
 absl::StatusOr<Connected> connect_plain(const std::string& address, const Deadline& deadline) {
   Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), /*tls=*/false);
   while (!connected.control->WaitForConnected(std::chrono::system_clock::now() +

@@ -38,6 +38,7 @@ bool is_base64url(absl::string_view text) {
                      [](char c) { return absl::ascii_isalnum(c) || c == '-' || c == '_'; });
 }
 
+/// Returns INVALID_ARGUMENT if the address is not HOST:PORT or [IPv6]:PORT.
 absl::Status check_address(absl::string_view address) {
   const std::size_t colon = address.rfind(':');
   if (colon == absl::string_view::npos || colon == 0) {
@@ -99,6 +100,7 @@ bool is_plain(absl::string_view rest) {
                      absl::ascii_isdigit);
 }
 
+/// Returns the text of a file of at most kMaxFile bytes. `name` is for error messages.
 absl::StatusOr<std::string> read_stream(std::FILE* file, const std::string& name) {
   std::string text(kMaxFile + 1, '\0');
   const std::size_t size = std::fread(text.data(), 1, text.size(), file);

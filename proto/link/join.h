@@ -9,8 +9,8 @@
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
 // instead of the digest. The users' string also names the dashboard, after the addresses, for
-// programs that speak HTTP (deploy/python/bandsaw.py). "+8787" is a port of the hosts in the
-// addresses, and "+127.0.0.1:8787" is an address of its own.
+// programs that speak HTTP (deploy/python/bandsaw.py). "+8787" gives only the port: the dashboard
+// is on the hosts in the addresses. "+127.0.0.1:8787" gives the host and the port of the dashboard.
 
 #include <optional>
 #include <string>

@@ -1,4 +1,5 @@
-// Writes to a temporary file of mode 0600, syncs it, and renames it to the target.
+// Reads and writes files that only their owner may read. The text is written to a temporary file of
+// mode 0600, which is synced and then renamed to the target.
 
 #include "proto/link/private_file.h"
 
@@ -16,10 +17,12 @@ namespace {
 
 constexpr std::size_t kMaxSize = 1 << 20;
 
+/// Returns the error "cannot `what` `path`" for the errno `error`.
 absl::Status failed(absl::string_view what, const std::string& path, int error) {
   return absl::ErrnoToStatus(error, absl::StrCat("cannot ", what, " ", path));
 }
 
+/// Owns a file descriptor, and closes it at the end.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -81,7 +84,7 @@ absl::StatusOr<std::string> read_private_file(const std::string& path) {
   }
   if ((found.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return absl::PermissionDeniedError(
-        absl::StrCat(path, " holds secrets and can be read by others: chmod 600 it"));
+        absl::StrCat(path, " holds secrets, but other users can read it; run chmod 600 on it"));
   }
   std::string text(kMaxSize + 1, '\0');
   std::size_t size = 0;

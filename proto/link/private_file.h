@@ -1,8 +1,8 @@
 #pragma once
 
 // Small files that only their owner may read: mode 0600 in a folder of mode 0700, written
-// atomically. (renderlib/base/atomic_file.h writes files readable by everybody, and proto does not
-// depend on renderlib.)
+// atomically. renderlib/base/atomic_file.h is not used here, because it writes files that everybody
+// may read, and because proto/link does not depend on renderlib.
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // SHA-256 digests. A blob (a part of a scene package) is named by its digest. When a worker sends
-// the pixels of a band (a range of rows), their digest is the checksum.
+// the pixels of a band (a range of rows and samples), their digest is the checksum.
 
 #include <array>
 #include <compare>

@@ -12,8 +12,9 @@ namespace bandsaw::wire {
 inline constexpr std::size_t kChunkBytes = 1 << 20;      ///< data in one chunk of a stream
 inline constexpr std::size_t kMessageBytes = 4 << 20;    ///< any gRPC message
 inline constexpr std::uint64_t kBlobBytes = 8ull << 30;  ///< one blob
-inline constexpr std::size_t kPartialBlobs = 64;  ///< partial uploads that are kept: the newest
-inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< total size of the partial uploads
+/// Number of interrupted uploads of blobs that the coordinator keeps. The newest are kept.
+inline constexpr std::size_t kPartialBlobs = 64;
+inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< total size of these uploads
 inline constexpr std::uint64_t kManifestBytes = 64ull << 20;  ///< a package's manifest
 inline constexpr std::uint64_t kPackageBytes = 32ull << 30;   ///< total size of a package's blobs
 inline constexpr std::uint64_t kBandBytes = 64ull << 20;      ///< pixels of one band

@@ -1,7 +1,7 @@
 #pragma once
 
-// SHA-256 (FIPS 180-4) without a library, for WebAssembly. Other programs use OpenSSL's, which is
-// faster.
+// SHA-256 (FIPS 180-4) without a library, for WebAssembly. Other programs use OpenSSL, whose
+// SHA-256 is faster.
 
 #include <algorithm>
 #include <array>
@@ -13,6 +13,7 @@
 
 namespace bandsaw::wire {
 
+/// Computes the digest of bytes that arrive in pieces.
 class Sha256 {
  public:
   void update(absl::Span<const std::byte> bytes) {
@@ -31,6 +32,7 @@ class Sha256 {
 
   /// Returns the digest of all bytes. MUST be called once, at the end.
   std::array<unsigned char, 32> finish() {
+    // Appends the padding of the standard: a 1 bit, zeros, and the number of bits.
     const std::uint64_t bits = size_ * 8;
     constexpr std::byte kEnd{0x80};
     update({&kEnd, 1});
