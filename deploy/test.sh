@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests that have the label `default`, or one of the LABELs.
+# Builds everything, then runs the tests that have one of the LABELs. Without a LABEL it runs the tests that have the label `default`.
 # Usage: deploy/test.sh [--strict] [LABEL...]    (--strict: the compilers' warnings are errors)
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,4 +1,5 @@
-# CMake's toolchain file for WebAssembly: clang with the C and C++ libraries of Debian's packages for it (deploy/wasm.sh).
+# CMake's toolchain file for WebAssembly: clang with the C and C++ libraries that Debian packages for WebAssembly. deploy/wasm.sh installs
+# them.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 foreach(language C CXX)

@@ -10,8 +10,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 deploy/install.sh wasm
-# get_sources: downloads the source packages of the Debian release that runs here. apt gets a list of package sources of its own, so
-# that the system's list stays as it is.
+# get_sources: downloads the source packages of the Debian release that runs here. It gives apt a separate list of package sources, so
+# that the system's list does not change.
 sources=$PWD/build/wasm/sources
 get_sources() {
   local release mirror

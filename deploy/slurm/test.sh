@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Tests a farm whose workers are jobs of Slurm. The script runs a Slurm on this machine, in a folder of its own, and installs nothing. While a
-# job of the farm renders, it adds workers, requeues one and cancels others. A worker that is requeued or cancelled must drain: it finishes its
-# bands and takes no more. The image must have the bytes of `bandsaw render`.
+# Tests a farm whose workers are jobs of Slurm. The script runs Slurm's daemons on this machine, keeps their files in a temporary folder, and
+# installs nothing. While the farm renders, the script adds workers, requeues one, cancels one, and sends one the signal that Slurm sends
+# before a time limit. Each of these three workers must drain: it finishes its bands (parts of the image) and takes no more. The image must
+# have the bytes of `bandsaw render`.
 # Exit status 77: Slurm is not installed.
 # Usage: deploy/slurm/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
@@ -93,8 +94,12 @@ start_workers() {
   BANDSAW_JOIN="$dir/data/join" BANDSAW_CACHE="$dir/cache" BANDSAW_WORKER="${2:-bandsaw-worker}" sbatch --parsable --array="$1" --cpus-per-task=1 \
     --output="$dir/worker-%A_%a.log" "$here/worker.sbatch"
 }
+# A worker is named by its task, such as 2_1: the number of the Slurm job, and the index in its array.
+# log_holds TASK PATTERN: succeeds if a line of the worker's log matches.
 log_holds() { grep -q "$2" "$dir/worker-$1.log" 2>/dev/null; }
+# times_joined TASK COUNT: succeeds if the worker has joined the farm at least so many times.
 times_joined() { [ "$(grep -c ' joined ' "$dir/worker-$1.log")" -ge "$2" ]; }
+# is_gone TASK: succeeds if Slurm no longer lists the worker.
 is_gone() { [ -z "$(squeue --noheader --jobs="$1" 2>/dev/null)" ]; }
 
 start_slurm
@@ -115,7 +120,7 @@ mkdir "$dir/shared"
 cp "$programs/bandsaw-worker" "$dir/shared/bandsaw-worker-$(uname -m)"
 second=$(start_workers 3-4 "$dir/shared/bandsaw-worker")
 until_true 30 log_holds "${second}_4" 'rendered job='
-echo "scaled up while it renders: $(squeue --noheader --states=RUNNING --array | wc -l) workers"
+echo "workers were added during the render, now running: $(squeue --noheader --states=RUNNING --array | wc -l)"
 
 scontrol requeue "${first}_1"
 until_true 60 log_holds "${first}_1" 'drain'
@@ -137,4 +142,4 @@ echo "a worker drained before its time limit"
 wait "$submit"
 bandsaw render "$scene" "${settings[@]}" -o "$dir/here.pfm" >/dev/null
 cmp "$dir/farm.pfm" "$dir/here.pfm"
-echo "the same bytes as without a farm"
+echo "the farm's image has the same bytes as that of bandsaw render"

@@ -7,16 +7,17 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 programs=$(cd "$1" && pwd)
 grep -q '^After=.*\bbandsaw\.service\b' "$here/bandsaw-worker.service" || {
-  echo "bandsaw-worker.service: it does not stop before bandsaw.service, which takes its last bands" >&2
+  echo "bandsaw-worker.service must stop before bandsaw.service, because the coordinator takes the worker's last bands" >&2
   exit 1
 }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-# restarts PACKAGE OLD-VERSION SERVICE...: checks that the script of the package restarts exactly these services, in this order, and
-# succeeds although systemctl fails to restart them, as it does for a masked unit. An empty old version: a new installation.
+# This systemctl records its calls, and succeeds only for daemon-reload: a restart fails, as that of a masked unit does.
 mkdir "$dir/bin"
 printf '#!/bin/sh\necho "$*" >>"%s"\n[ "$1" = daemon-reload ]\n' "$dir/calls" >"$dir/bin/systemctl"
 chmod +x "$dir/bin/systemctl"
+# restarts PACKAGE OLD-VERSION SERVICE...: checks that the postinst script of the package restarts exactly these services, in this order,
+# and succeeds although each restart fails. An empty old version stands for a new installation.
 restarts() {
   : >"$dir/calls"
   sed "s#/run/systemd/system#$dir#" "$here/../packages/postinst" |

@@ -1,7 +1,7 @@
 #pragma once
 
-// Defines std::mutex, which libc++ for WebAssembly does not have because its programs have one
-// thread. The build includes this header before each file of the libraries.
+// Defines std::mutex. libc++ for WebAssembly does not have it, because WebAssembly programs have
+// one thread. The build includes this header at the start of each source file.
 
 #ifdef __cplusplus
 #include <mutex>

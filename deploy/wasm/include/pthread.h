@@ -1,6 +1,6 @@
 #pragma once
 
-// Declares the part of pthreads that Abseil refers to, for programs of one thread. The wasi-libc of
+// Defines the part of pthreads that Abseil refers to, for programs of one thread. The wasi-libc of
 // Debian 12 has the types, but no pthread.h.
 
 #include <sys/types.h>
