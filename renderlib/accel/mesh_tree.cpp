@@ -66,7 +66,7 @@ FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corner
   FlatPacker::Corners halfway{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      change[i][k] = close[i][k] - open[i][k];  // as ShutterTime computes it; may overflow
+      change[i][k] = close[i][k] - open[i][k];  // computed as in ShutterTime; it may overflow
       halfway[i][k] = 0.5f * open[i][k] + 0.5f * close[i][k];
     }
   }

@@ -99,7 +99,7 @@ class Float8 {
   friend Float8 about_fused_minus(const Float8& a, const Float8& b, const Float8& c) {
     return fused_minus(a, b, c);
   }
-  /// min() and max() return b in lanes where a or b is NaN.
+  /// min() and max() return b in lanes where a or b is NaN, and in lanes where both are zeros.
   friend Float8 min(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] < b.v_[i] ? a.v_[i] : b.v_[i]; });
   }

@@ -16,7 +16,7 @@
 namespace bandsaw {
 namespace {
 
-/// Blocks of fewer values are left out.
+/// Blocks with fewer than kMinValues values are left out.
 constexpr std::uint64_t kMinValues = 8;
 
 /// Running mean and variance (Welford 1962).

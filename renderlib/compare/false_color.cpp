@@ -17,6 +17,7 @@ using Code = std::array<double, 3>;
 constexpr std::array<Code, 6> kStops = {
     {{0, 0, 0}, {58, 9, 99}, {150, 38, 103}, {221, 81, 58}, {252, 165, 10}, {252, 255, 220}}};
 
+// Returns the linear value of the sRGB code that is nearest to `code`.
 float linear(double code) { return srgb_table()[static_cast<std::size_t>(std::lround(code))]; }
 
 // Returns the colour of a value, which is clamped to [0, 1], in linear RGB.

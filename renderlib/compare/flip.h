@@ -17,10 +17,10 @@ inline constexpr double kPixelsPerDegree = 67;
 /// the same size.
 Plane flip(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 
-/// Returns the error per pixel, in [0, 1], of HDR-FLIP: the maximum of flip() over a range of
-/// exposures, each through a film curve (Andersson et al. 2021, section 3). The range is from the
-/// exposure for the reference's maximum to the exposure for its median. The images MUST have the
-/// same size.
+/// Returns the error per pixel, in [0, 1], of HDR-FLIP (Andersson et al. 2021, section 3). Both
+/// images are shown through a film curve at several exposures, and the error is the maximum of
+/// flip() over these exposures. The exposures range from that for the maximum of the reference to
+/// that for its median. The images MUST have the same size.
 Plane hdr_flip(const Image& image, const Image& reference,
                double pixels_per_degree = kPixelsPerDegree);
 

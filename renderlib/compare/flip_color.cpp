@@ -19,7 +19,7 @@ struct Sensitivity {
 constexpr Sensitivity kLuminance = {1, 0.0047, 0, 1e-5};
 constexpr Sensitivity kRedGreen = {1, 0.0053, 0, 1e-5};
 constexpr Sensitivity kBlueYellow = {34.1, 0.04, 13.5, 0.025};
-constexpr double kWidest = 0.04;  // largest b of the three
+constexpr double kWidest = 0.04;  // largest b of the three channels
 
 constexpr double kColorExponent = 0.7;  // q_c
 constexpr double kKneeError = 0.4;      // p_c
