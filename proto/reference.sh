@@ -5,10 +5,11 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 reference() {
-  # kind[d]: message, enum or oneof, whichever is open at depth d; open[d]: its name. pending: the comment above the next field or message.
-  # about[name]: what the reference says on a message.
+  # kind[d]: "message", "enum" or "oneof", the kind of the block that is open at depth d. open[d]: the name of this block.
+  # pending: the comment above the next field or message. order[i]: the name of message or enum i of the file.
+  # about[name]: the text about a message or enum. is_enum[name]: 1 for an enum. count[name]: the number of its fields or words.
   # rows[name, k]: the name of field k of a message, or the start of the table row for word k of an enum.
-  # row_words[name, k]: what the reference says on the field or word. row_type[name, k]: the field's type, and 1 if it is repeated.
+  # row_words[name, k]: the text about the field or word. row_type[name, k]: the type of the field, and 1 if the field is repeated.
   # row_one[name, k]: 1 if the field is in a oneof.
   awk '
     function escaped(text) { gsub(/\|/, "\\|", text); return text }
@@ -73,7 +74,7 @@ reference() {
     END {
       if (bad) exit 1
       print "# The scene file\n"
-      print "Made of the comments in `scene.proto` by `proto/reference.sh`: change them there.\n"
+      print "`proto/reference.sh` makes this file from the comments in `scene.proto`. Change the comments, not this file.\n"
       print intro
       for (i = 1; i <= names; ++i) {
         name = order[i]

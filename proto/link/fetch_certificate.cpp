@@ -29,8 +29,8 @@ std::string take_all(BIO* bio) {
   return bytes;
 }
 
-/// One round of the handshake: runs OpenSSL, sends its output and feeds it the answer. Returns true
-/// once the handshake is complete.
+/// Runs one round of the handshake: calls OpenSSL, sends what OpenSSL has written, and passes the
+/// server's answer to OpenSSL. Returns true once the handshake is complete.
 absl::StatusOr<bool> advance(SSL* session, Socket& socket, const Deadline& deadline) {
   ERR_clear_error();  // SSL_get_error reports errors that earlier calls of this thread have left
   const int result = SSL_connect(session);
