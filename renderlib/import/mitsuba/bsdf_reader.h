@@ -13,32 +13,38 @@
 
 namespace bandsaw::mitsuba {
 
-/// The material while a bsdf and the wrappers around it (twosided, mask, normalmap, bumpmap) are
-/// read.
+/// The unfinished material of a bsdf. The bsdf and each wrapper around it (twosided, mask,
+/// normalmap, bumpmap) add their parts.
 struct Draft {
   scene::Material material;
   bool two_sided = false;
-  /// The geometry must be turned over, because its outside is denser than its inside.
+  /// The geometry must be turned inside out, because the index of refraction is larger outside.
   bool turned = false;
   bool transmits = false;  ///< light passes through the surface, so that neither side is black
 };
 
 class BsdfReader {
  public:
-  /// Both MUST outlive this object.
+  /// `surface` is the surface that shows the bsdf. `to` collects warnings and made files. Both
+  /// arguments MUST outlive this object.
   BsdfReader(const TexturedSurface& surface, Conversion& to) : surface_(surface), to_(to) {}
 
   /// Converts the bsdf and adds it to `draft`. Warns of properties without a counterpart.
   absl::Status read(const Object& bsdf, Draft& draft);
 
  private:
+  // Each function without a comment is named after a type of bsdf. It reads the parameters `from`
+  // of such a bsdf and adds them to `draft`.
+
   /// Calls the function for the bsdf's type. An unknown type becomes grey diffuse, with a warning.
   absl::Status read_kind(const Parameters& from, Draft& draft);
-  /// Sets a colour, or a texture if it varies. If the parameter is absent, the field stays unset.
+  /// Reads the parameter `name`. Sets color() to a constant colour, or texture() to a texture that
+  /// varies. Sets neither if the parameter is absent.
   absl::Status color_or_texture(const Parameters& from, const std::string& name,
                                 const std::function<scene::Color*()>& color,
                                 const std::function<scene::Texture*()>& texture);
-  /// Sets a colour. For a texture, warns and sets nothing.
+  /// Sets color() to the constant colour of the parameter `name`. For a texture, warns and sets
+  /// nothing.
   absl::Status color_only(const Parameters& from, const std::string& name,
                           const std::function<scene::Color*()>& color);
   absl::Status diffuse(const Parameters& from, Draft& draft);
@@ -53,8 +59,9 @@ class BsdfReader {
   /// Warns of colours of glass, because the glass of a Bandsaw scene file has none.
   absl::Status warn_of_tints(const Parameters& from);
   absl::Status thin_dielectric(const Parameters& from, Draft& draft);
-  /// Sets eta and k by the name of a metal or by their colours. Without both, the conductor is a
-  /// mirror, or copper in a scene of version 0.x. k is 1 if eta alone is given.
+  /// Sets eta and k of a conductor: from the name of a metal, or else from the parameters eta and
+  /// k. If neither a metal nor eta is given, the conductor is a mirror, or copper in a scene of
+  /// version 0.x. If eta is given without k, k is 1.
   absl::Status set_metal(const Parameters& from, scene::Conductor& to);
   absl::Status conductor(const Parameters& from, Draft& draft);
   absl::Status plastic(const Parameters& from, Draft& draft);
@@ -66,11 +73,11 @@ class BsdfReader {
   absl::Status ward(const Parameters& from, Draft& draft);
 
   // Defined in principled_bsdfs.cpp:
-  /// Sets `field` to a number in [0, most], or a texture of numbers. If the parameter is absent,
-  /// the field stays unset.
+  /// Sets field() to the parameter `name`: a number clamped to [0, most], or a texture of numbers.
+  /// Sets nothing if the parameter is absent.
   absl::Status parameter(const Parameters& from, const std::string& name, double most,
                          const std::function<scene::Parameter*()>& field);
-  /// Sets the fields that principled and principledthin share.
+  /// Sets the fields that principled and principledthin share, and `metallic` if `to` has it.
   template <class Message>
   absl::Status common_parameters(const Parameters& from, Message& to);
   absl::Status principled(const Parameters& from, Draft& draft);

@@ -1,6 +1,6 @@
-// Converts bsdfs that contain another bsdf (twosided, mask, normalmap, bumpmap, coating). Each
-// function reads the inner bsdf into the draft and adds the property of its wrapper. The coat of a
-// coating is left out with a warning.
+// Converts wrappers: bsdfs that contain another bsdf (twosided, mask, normalmap, bumpmap, coating).
+// The function of each wrapper reads the inner bsdf into `draft`, the unfinished material, and adds
+// what the wrapper changes. The coat of a coating is left out with a warning.
 
 #include <algorithm>
 #include <utility>

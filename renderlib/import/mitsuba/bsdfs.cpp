@@ -26,7 +26,8 @@ const Object* unwrapped(const Object* bsdf) {
   return bsdf;
 }
 
-/// Adds the radiance of an area emitter.
+/// Sets the emission of `material` to the radiance of the area emitter `emitter`, or to white of
+/// radiance 1 if the emitter gives none.
 absl::Status add_emission(const Object& emitter, const TexturedSurface& surface,
                           scene::Material& material, Conversion& to) {
   const Parameters from(emitter);
@@ -113,7 +114,7 @@ absl::StatusOr<SurfaceMaterial> Materials::blend(const Object& bsdf, const Objec
                                              parts.size()));
   }
   Varying weight{0.5};
-  if (bsdf.type == "mixturebsdf") {  // version 0.x: "weights" of both
+  if (bsdf.type == "mixturebsdf") {  // version 0.x: one text has both weights
     ASSIGN_OR_RETURN(const std::string weights, from.text("weights", "0.5, 0.5"));
     to_.warn(bsdf.place, absl::StrCat("bsdf \"mixturebsdf\" with the weights ", weights,
                                       " is shown as an equal mixture"));

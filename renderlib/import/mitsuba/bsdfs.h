@@ -57,7 +57,7 @@ class Materials {
   Conversion& to_;
   std::map<Key, SurfaceMaterial> known_;
   std::set<std::string> names_;
-  /// How many numbers were tried for each name. The first number is 2.
+  /// For each name, how many numbers unique_name() has tried to append. The first number is 2.
   std::map<std::string, int> counts_;
 };
 

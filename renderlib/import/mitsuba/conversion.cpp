@@ -1,5 +1,5 @@
-// Collects the warnings of the conversion of a Mitsuba scene, each once. Parameters that nothing
-// has read are reported.
+// Collects the warnings of the conversion of a Mitsuba scene. A repeated warning is stored once.
+// Parameters that nothing has read cause warnings.
 
 #include "renderlib/import/mitsuba/conversion.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Holds the state of one conversion that all its parts share: the files that it may read, the files
-// that it has made, its warnings.
+// Holds the state that all parts of the conversion of a Mitsuba scene share: the files that it may
+// read, the files that it has made, and its warnings.
 
 #include <string>
 #include <vector>
@@ -23,9 +23,9 @@ struct Conversion {
   /// The scene is of version 0.x, some of whose defaults are not those of versions 2 and 3.
   bool is_old = false;
 
-  /// Adds "scene.xml:12: <what>", unless it is there already.
+  /// Appends "scene.xml:12: <what>" to `warnings`, unless `warnings` contains this text already.
   void warn(const Place& place, const std::string& what);
-  /// Warns of each parameter that was not read.
+  /// Warns of each of `parameters` that was not read.
   void warn_of_unused(const Parameters& parameters);
 };
 

@@ -18,6 +18,7 @@ namespace bandsaw {
 namespace mitsuba {
 namespace {
 
+/// Converts the <scene> element `root` to `scene`. `to` collects the warnings and the made files.
 absl::Status convert(const Object& root, scene::Scene& scene, Conversion& to) {
   const Parameters from(root);
   const auto sensors = [&] {
@@ -25,7 +26,7 @@ absl::Status convert(const Object& root, scene::Scene& scene, Conversion& to) {
     return found.empty() ? from.objects("camera") : found;  // "camera": version 0.5
   }();
   if (sensors.empty()) {
-    return error_at(root.place, "has no sensor");
+    return error_at(root.place, "the scene has no sensor");
   }
   if (sensors.size() > 1) {
     to.warn(sensors[1]->place, "of several sensors the first is shown");

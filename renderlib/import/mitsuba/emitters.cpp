@@ -21,6 +21,7 @@
 namespace bandsaw::mitsuba {
 namespace {
 
+/// Appends x, y and z.
 void set(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.x);
   to->Add(v.y);
@@ -50,6 +51,9 @@ absl::StatusOr<Frame> placed_frame(const Parameters& from) {
   }
   return frame_of(to_world);
 }
+
+// Each function that takes `from`, `scene` and `to` converts the emitter with the parameters
+// `from`. It adds a light to `scene` or sets the background. `to` collects warnings and made files.
 
 absl::Status constant(const Parameters& from, scene::Scene& scene, Conversion& to) {
   ASSIGN_OR_RETURN(const Rgb radiance, light_color(from, "radiance", to));
@@ -93,7 +97,7 @@ absl::Status spot(const Parameters& from, scene::Scene& scene, Conversion& to) {
   light.set_outer_angle(cutoff);
   light.set_falloff(scene::SpotLight::FALLOFF_LINEAR_ANGLE);
   if (const Property* image = from.find("texture")) {
-    // u increases along x, which is to the left, and v along y.
+    // The frame's x axis points to the left. u increases along x, and v along y.
     const TexturedSurface upright{UvFrame::kSame, {}};
     ASSIGN_OR_RETURN(*light.mutable_image(), texture_of(*image, ColorOf::kLight, upright, to));
     set(frame.up, light.mutable_up());
@@ -235,8 +239,8 @@ absl::Status environment(const Parameters& from, scene::Scene& scene, Conversion
   scene::Rotation& ours = *map.add_rotate();
   set({0, 1, 0}, ours.mutable_axis());
   ours.set_degrees(-90);
-  // If the transform mirrors, the image has been mirrored above, and the x axis below is opposite
-  // to the transform's x axis.
+  // The following axes are always right-handed. If the transform mirrors, x is opposite to the
+  // transform's x axis, which is why the image was mirrored.
   const Vec3 z = frame.ahead;
   const Vec3 y = normalize(frame.up - z * dot(frame.up, z));
   const Vec3 x = cross(y, z);
@@ -272,7 +276,7 @@ absl::Status add_emitter(const Object& emitter, scene::Scene& scene, Conversion&
   const auto kind = kinds.find(emitter.type);
   if (kind == kinds.end()) {
     to.warn(emitter.place,
-            absl::StrCat("emitter \"", emitter.type, "\" is not known and left out"));
+            absl::StrCat("emitter \"", emitter.type, "\" is not known and is left out"));
     return absl::OkStatus();
   }
   const Parameters from(emitter);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts lights and environments of Mitsuba scenes, which are the emitters without a surface.
+// Converts the emitters of a Mitsuba scene that have no surface: lights and environments.
 
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"
@@ -8,8 +8,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// Adds a light to `scene` or sets its background. An emitter of unknown type is left out with a
-/// warning. Returns INVALID_ARGUMENT, with file and line, for a parameter that is wrong.
+/// Adds `emitter` to `scene` as a light or as the background. An emitter of unknown type is left
+/// out with a warning. Returns INVALID_ARGUMENT, with file and line, for a parameter that is wrong.
 absl::Status add_emitter(const Object& emitter, scene::Scene& scene, Conversion& to);
 
 }  // namespace bandsaw::mitsuba

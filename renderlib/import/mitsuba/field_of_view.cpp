@@ -1,6 +1,6 @@
 // Converts the field of view of a Mitsuba sensor or projector to half the height of the image plane
-// at distance 1. The file gives the field of view as an angle along an axis that it names, or as a
-// focal length.
+// at distance 1. A scene gives the field of view as an angle along a named axis of the image, or as
+// a focal length.
 
 #include "renderlib/import/mitsuba/field_of_view.h"
 
@@ -53,7 +53,7 @@ absl::StatusOr<double> half_height_of_view(const Parameters& from, double aspect
         from.place(),
         absl::StrCat("focal_length must be a length such as \"50mm\", is \"", text, "\""));
   }
-  // The diagonal of a 35 mm film is that of 36 mm x 24 mm.
+  // The focal length is meant for 35 mm film, whose frame has 36 mm x 24 mm.
   return along_axis(from, std::sqrt(36.0 * 36 + 24 * 24) / 2 / *millimetres, "diagonal", aspect);
 }
 

@@ -1,5 +1,6 @@
-// find() looks for a file in the folders of the scene's <path> elements, the last one first, and
-// then in the scene's own folder. A file outside of the import's folder is never found.
+// Finds the files that a Mitsuba scene names. find() searches the folders of the <path> elements,
+// beginning with the last element, and then the folder that contains the scene. A file outside of
+// the import's folder (ForeignScene::folder) is never found.
 
 #include "renderlib/import/mitsuba/files.h"
 

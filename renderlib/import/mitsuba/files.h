@@ -1,8 +1,8 @@
 #pragma once
 
-// Finds the files that a Mitsuba scene names. They are searched in the folders of its <path>
-// elements, the latest first, and then in the folder of the scene. Only files below the folder of
-// the import are found.
+// Finds the files that a Mitsuba scene names. The folders of the scene's <path> elements are
+// searched, beginning with the last element, and then the folder that contains the scene. Only
+// files below the import's folder (ForeignScene::folder) are found.
 
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace bandsaw::mitsuba {
 
 struct FoundFile {
-  std::string name;  ///< relative to the folder of the import, as Bandsaw scene files name it
+  std::string name;  ///< relative to the import's folder, as Bandsaw scene files name the file
   std::string path;  ///< real path
 };
 
@@ -28,10 +28,10 @@ class Files {
   absl::Status add_folder(const std::string& name, const std::string& referring);
 
   /// Finds a file. Returns NOT_FOUND if it is missing, PERMISSION_DENIED if `name` leads outside of
-  /// the import's folder or the file may not be read, and INVALID_ARGUMENT if `name` is not that of
+  /// the import's folder or the file may not be read, and INVALID_ARGUMENT if `name` does not name
   /// a regular file.
   absl::StatusOr<FoundFile> find(const std::string& name) const;
-  /// Finds a file by the name that find() gave it. The errors are those of find().
+  /// Finds a file by FoundFile::name. The errors are those of find().
   absl::StatusOr<FoundFile> known(const std::string& name) const;
   /// Returns the bytes of a file. Returns RESOURCE_EXHAUSTED or INVALID_ARGUMENT if the file has
   /// more than `max_bytes` bytes.

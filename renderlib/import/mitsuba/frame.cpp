@@ -1,5 +1,5 @@
-// Splits the transform of a Mitsuba sensor or emitter into position, axes and scale, and notes what
-// these cannot express: mirroring and skew.
+// Splits the transform of a Mitsuba sensor or emitter into position, axes and scale. Notes whether
+// the transform mirrors, and whether it skews.
 
 #include "renderlib/import/mitsuba/frame.h"
 

@@ -20,10 +20,13 @@ struct Coefficient {
   std::optional<scene::VolumeGrid> grid = std::nullopt;
 };
 
+/// Reads one medium inside a shape.
 class MediumReader {
  public:
+  /// `to_world` is the placement of the shape around the medium.
   MediumReader(const Transform& to_world, Conversion& to) : to_world_(to_world), to_(to) {}
 
+  /// Fills `medium` from the parameters `from` of Mitsuba's medium.
   absl::Status read(const Parameters& from, scene::Medium& medium) {
     ASSIGN_OR_RETURN(const double scale, from.number("scale", 1));
     from.ignore({"sample_emitters", "has_spectral_extinction", "majorant_resolution_factor",
@@ -84,6 +87,8 @@ class MediumReader {
     return absl::OkStatus();
   }
 
+  /// Reads the phase function. Any type except hg becomes isotropic, with a warning for an unknown
+  /// type.
   absl::Status read_phase(const Parameters& from, scene::Medium& medium) {
     for (const Property* property : from.objects("phase")) {
       const Object& phase = **std::get_if<const Object*>(&property->value);
@@ -143,8 +148,8 @@ class MediumReader {
     return out;
   }
 
-  /// Reads a gridvolume. Its matrix leads from the grid to the space of the shape around the
-  /// medium.
+  /// Reads a gridvolume. The matrix of the result maps from the grid to the space of the shape
+  /// around the medium.
   absl::StatusOr<scene::VolumeGrid> grid(const Parameters& from) {
     scene::VolumeGrid to;
     ASSIGN_OR_RETURN(const std::string name, from.text("filename", ""));
@@ -185,6 +190,7 @@ class MediumReader {
   Conversion& to_;
 };
 
+/// Returns true if a parameter of the medium is a volume.
 bool has_grid(const Object& medium) {
   return std::any_of(medium.properties.begin(), medium.properties.end(), [](const Property& p) {
     const auto* const* object = std::get_if<const Object*>(&p.value);

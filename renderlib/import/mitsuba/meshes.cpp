@@ -77,6 +77,7 @@ void set_atlas_uvs(const Atlas& atlas, PlyMesh& split) {
   }
 }
 
+/// Returns the value of the attribute at the vertex or triangle `index`. A single channel is grey.
 Rgb value_of(const MeshAttribute& attribute, std::size_t index) {
   const float* at = attribute.values.data() + index * attribute.channels;
   return attribute.channels == 1 ? gray(at[0]) : Rgb{at[0], at[1], at[2]};
@@ -150,8 +151,8 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   // (kSame) or 1 - Mitsuba's v (kFlipped).
   const UvFrame natural =
       request.type == "obj" && request.flip_v ? UvFrame::kFlipped : UvFrame::kSame;
-  // True if the file is used unchanged: Bandsaw's importer reads the same normals and sides from
-  // the file as Mitsuba, and the uvs that `natural` describes. A file is always made if `handed` is
+  // True if the file is used unchanged. Then Bandsaw's importer and Mitsuba read the same normals
+  // and sides from the file, and `natural` describes the uvs. A file is always made if `handed` is
   // set (u, v and the normal must be right-handed) or if `closed` is set (a medium is inside of the
   // mesh, so the file must have a single mesh).
   const bool as_it_is = request.type != "serialized" && has_normals != faceted && !turned &&

@@ -20,13 +20,13 @@ namespace bandsaw::mitsuba {
 struct MeshRequest {
   FoundFile file;
   std::string type;                       ///< "obj", "ply" or "serialized"
-  std::int64_t index = 0;                 ///< of the mesh in a "serialized" file
+  std::int64_t index = 0;                 ///< number of the mesh in a "serialized" file
   bool flip_v = false;                    ///< v of the file is 1 - v of Mitsuba
-  bool face_normals = false;              ///< without normals of vertices
+  bool face_normals = false;              ///< the triangles look flat
   bool turned = false;                    ///< the mesh must be turned inside out
-  bool mirrored = false;                  ///< its placement mirrors it
+  bool mirrored = false;                  ///< the placement mirrors the mesh
   bool handed = false;                    ///< u, v and the normal must be right-handed
-  bool closed = false;                    ///< it must be one mesh, because a medium is inside
+  bool closed = false;                    ///< the file must have one mesh: a medium is inside
   std::set<std::string> attributes = {};  ///< attributes that textures use
 };
 
@@ -35,6 +35,7 @@ struct MeshFile {
   TexturedSurface surface;  ///< uvs and attributes, for the material of the mesh
 };
 
+/// Provides the mesh files of the converted scene. Equal requests get the same file.
 class Meshes {
  public:
   explicit Meshes(Conversion& to) : to_(to) {}

@@ -24,8 +24,8 @@ class Parameters {
   const Property* find(const std::string& name) const;
   bool has(const std::string& name) const { return find(name) != nullptr; }
 
-  /// These functions return the value of the parameter, or `otherwise` if there is none.
-  /// They return INVALID_ARGUMENT with the parameter's place if it has another type.
+  /// number() to vector() return the value of the parameter, or `otherwise` if there is none. They
+  /// return INVALID_ARGUMENT with the parameter's place if the parameter has another type.
   absl::StatusOr<double> number(const std::string& name, double otherwise) const;
   absl::StatusOr<std::int64_t> integer(const std::string& name, std::int64_t otherwise) const;
   absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;
@@ -37,7 +37,7 @@ class Parameters {
   /// Returns the parameters that are objects of this tag, whatever their names, in their order.
   std::vector<const Property*> objects(const std::string& tag) const;
 
-  /// Marks these parameters as read without reading them. Used for parameters that have no effect
+  /// Marks the parameters `names` as read. Used for parameters that have no effect
   /// on Bandsaw's picture.
   void ignore(std::initializer_list<const char*> names) const;
   /// Returns the parameters that were not read.

@@ -1,4 +1,4 @@
-// Converts the principled bsdfs, principled and principledthin (bsdf_reader.h).
+// Converts Mitsuba's bsdfs "principled" and "principledthin", with functions of BsdfReader.
 
 #include <algorithm>
 #include <type_traits>
@@ -9,6 +9,7 @@
 
 namespace bandsaw::mitsuba {
 
+/// Sets field() to the parameter `name`: a texture of numbers, or a number clamped to [0, most].
 absl::Status BsdfReader::parameter(const Parameters& from, const std::string& name, double most,
                                    const std::function<scene::Parameter*()>& field) {
   if (!from.has(name)) {

@@ -20,6 +20,7 @@ using Corner = std::array<std::uint32_t, 3>;
 
 class ObjReader {
  public:
+  /// If `flip_v` is set, each v of the file becomes 1 - v.
   explicit ObjReader(bool flip_v) : flip_v_(flip_v) {}
 
   absl::StatusOr<SourceMesh> read(absl::string_view bytes) {
@@ -59,6 +60,7 @@ class ObjReader {
     return parts[0] == "f" ? read_face(parts) : absl::OkStatus();
   }
 
+  /// Appends to `to` the n numbers that follow the keyword parts[0].
   template <std::size_t n>
   static absl::Status read_floats(const std::vector<absl::string_view>& parts,
                                   std::vector<std::array<float, n>>& to) {
@@ -76,8 +78,8 @@ class ObjReader {
     return absl::OkStatus();
   }
 
-  /// Reads an index that counts from 1 or, if it is negative, backwards from the end. Returns the
-  /// index from 0, which is below `count`.
+  /// Reads an index of a list of `count` entries. In the file, a positive index counts from 1, and
+  /// a negative one counts backwards from the end. The result counts from 0.
   static absl::StatusOr<std::uint32_t> read_index(absl::string_view text, std::size_t count) {
     std::int64_t index = 0;
     if (!absl::SimpleAtoi(text, &index)) {

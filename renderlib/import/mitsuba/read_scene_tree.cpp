@@ -1,6 +1,6 @@
 // Reads the XML of a Mitsuba scene as a tree of objects. Reader parses each file with pugixml,
-// replaces parameters in attributes, makes an Object of each element, and resolves references at
-// the end. Bounds on size, nesting and number of objects are checked during reading.
+// replaces the parameters ("$name") in attributes, and makes an Object of each element. When all
+// files are read, it resolves references. Size, nesting and the number of objects have bounds.
 
 #include "renderlib/import/mitsuba/read_scene_tree.h"
 
@@ -72,6 +72,7 @@ struct Source {
   std::string path;
   std::vector<std::size_t> line_starts = {};  ///< offsets, without that of the first line
 
+  /// Returns the place of a byte of the file.
   Place at(std::ptrdiff_t offset) const {
     const auto after =
         std::upper_bound(line_starts.begin(), line_starts.end(),
@@ -117,6 +118,7 @@ pugi::xml_node too_deep(const pugi::xml_node& root) {
   return {};
 }
 
+/// Returns the tags of elements that are objects of Mitsuba, even without a type.
 const std::set<std::string>& object_tags() {
   static const std::set<std::string> tags = {
       "scene", "bsdf",    "shape",   "emitter", "luminaire", "sensor", "camera", "integrator",
@@ -219,6 +221,7 @@ class Reader {
     return value;
   }
 
+  /// Reads an element that is an object, with its children, and appends the object to the tree.
   absl::StatusOr<const Object*> read_object(const pugi::xml_node& node, const Source& source) {
     Object& object = tree_.objects.emplace_back();
     object.tag = node.name();
@@ -265,7 +268,7 @@ class Reader {
     auto value = read_value(tag, node, source);
     if (absl::IsNotFound(value.status())) {
       tree_.warnings.push_back(
-          absl::StrCat(text_of(place), ": element <", tag, "> is not known and left out"));
+          absl::StrCat(text_of(place), ": element <", tag, "> is not known and is left out"));
       return absl::OkStatus();
     }
     if (!value.ok()) {
@@ -319,10 +322,8 @@ class Reader {
       return error_at(place, absl::StrCat("\"", name, "\" includes itself"));
     }
     if (open_.size() >= kMaxIncludeDepth || ++includes_ > kMaxIncludes) {
-      return error_at(place, absl::StrCat("more than ", kMaxIncludeDepth,
-                                          " files include each other, "
-                                          "or more than ",
-                                          kMaxIncludes, " are included"));
+      return error_at(place, absl::StrCat("files include each other more than ", kMaxIncludeDepth,
+                                          " deep, or more than ", kMaxIncludes, " are included"));
     }
     open_.push_back(source.path);
     ASSIGN_OR_RETURN(const pugi::xml_node root, open(file->path, file->name));
@@ -373,6 +374,7 @@ class Reader {
                               : absl::StatusOr<Value>(absl::NotFoundError(tag));
   }
 
+  /// Reads a <spectrum>, whose values are in the file that it names or in `text`.
   absl::StatusOr<Value> read_spectrum_of(const std::string& text, const pugi::xml_node& node,
                                          const Source& source) {
     if (node.attribute("filename").empty()) {
@@ -435,6 +437,7 @@ class Reader {
     return to;
   }
 
+  /// Reads a <transform>, the product of its children. The first child is applied first.
   absl::StatusOr<Value> read_transform(const pugi::xml_node& node, const Source& source) {
     Transform to;
     for (const pugi::xml_node& child : node.children()) {
@@ -457,6 +460,7 @@ class Reader {
     return Value(to);
   }
 
+  /// Reads one child of a <transform>, such as <rotate>.
   absl::StatusOr<Transform> read_step(const pugi::xml_node& node, const Source& source) {
     const std::string tag = node.name();
     if (tag == "translate") {
@@ -517,6 +521,7 @@ class Reader {
                        {x.z, y.z, ahead.z, origin.z}}}};
   }
 
+  /// Sets the property of each <ref> to the object that it names, then checks for cycles.
   absl::Status resolve_references() {
     for (const Reference& reference : references_) {
       Property& property = reference.in->properties[reference.property];
@@ -536,9 +541,9 @@ class Reader {
     return check_cycles(*tree_.root, 0);
   }
 
-  /// Checks `object` and the objects that it contains and refers to: none may contain itself, and
-  /// none except scenes and shapes may have more than kMaxParts parts. Stores in sizes_ how many
-  /// objects each object contains.
+  /// Checks `object`, the objects that it contains and the objects that it refers to. No object may
+  /// contain or refer to itself, even through other objects. Only scenes and shapes may have more
+  /// than kMaxParts parts. Stores the size of each object in sizes_.
   absl::Status check_cycles(const Object& object, int depth) {
     if (depth > kMaxNesting) {
       return error_at(object.place, absl::StrCat("objects are nested more than ", kMaxNesting,
@@ -583,7 +588,7 @@ class Reader {
   std::map<std::string, std::string> aliases_;
   std::vector<Reference> references_;
   std::set<const Object*> visiting_;  ///< objects that check_cycles() is visiting
-  /// The number of objects in each object, itself and the objects that it refers to included.
+  /// For each object, 1 plus the sizes of the objects that it contains or refers to.
   std::map<const Object*, std::uint64_t> sizes_;
 };
 

@@ -1,5 +1,5 @@
-// Reads one mesh of Mitsuba's *.serialized: finds its offset in the table at the end of the file,
-// inflates from there, and reads vertices and triangles.
+// Reads one mesh of Mitsuba's *.serialized format. Finds the offset of the mesh in the table at the
+// end of the file, decompresses the data at this offset, and reads vertices and triangles.
 
 #include <zlib.h>
 
@@ -32,6 +32,7 @@ absl::Status damaged(absl::string_view why) {
   return absl::InvalidArgumentError(absl::StrCat("is damaged: ", why));
 }
 
+/// Returns the number of type T at `offset`.
 template <class T>
 absl::StatusOr<T> value_at(absl::string_view bytes, std::uint64_t offset) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) {
@@ -42,7 +43,8 @@ absl::StatusOr<T> value_at(absl::string_view bytes, std::uint64_t offset) {
   return value;
 }
 
-/// Decompresses a stream. Memory grows with the data that arrives, not with what a header claims.
+/// Decompresses a stream. Memory grows with the data that arrive, not with the size that a header
+/// claims.
 class Inflater {
  public:
   explicit Inflater(absl::string_view bytes) : rest_(bytes) {
@@ -73,6 +75,7 @@ class Inflater {
     return out;
   }
 
+  /// Returns the next sizeof(T) bytes as a number of type T.
   template <class T>
   absl::StatusOr<T> number() {
     ASSIGN_OR_RETURN(const std::string bytes, take(sizeof(T)));
@@ -80,8 +83,8 @@ class Inflater {
   }
 
  private:
-  /// Decompresses up to `size` bytes to `to`. Returns their number, which is smaller than `size` if
-  /// the stream ends or is damaged.
+  /// Decompresses up to `size` bytes to `to`. Returns the number of decompressed bytes. It is
+  /// smaller than `size` if the stream ends or is damaged.
   std::uint64_t fill(char* to, std::uint64_t size) {
     constexpr std::size_t kMaxPiece = std::size_t{1} << 30;
     stream_.next_out = reinterpret_cast<Bytef*>(to);
@@ -121,7 +124,8 @@ absl::StatusOr<std::uint64_t> offset_of(absl::string_view bytes, std::int64_t in
   ASSIGN_OR_RETURN(const std::uint32_t count,
                    value_at<std::uint32_t>(bytes, bytes.size() - sizeof(std::uint32_t)));
   if (index < 0 || index >= count) {
-    return absl::InvalidArgumentError(absl::StrCat("has no mesh ", index, ", only ", count));
+    return absl::InvalidArgumentError(
+        absl::StrCat("has no mesh ", index, ": it has ", count, " meshes, counted from 0"));
   }
   const std::uint64_t entry = version == kVersion4 ? 8 : 4;
   const std::uint64_t from_end = sizeof(std::uint32_t) + entry * (count - index);
@@ -158,6 +162,8 @@ absl::Status read_vectors(Inflater& in, std::uint64_t count,
   return absl::OkStatus();
 }
 
+/// Reads `count` vertices of numbers of type From. `flags` says what a vertex has besides its
+/// position.
 template <class From>
 absl::Status read_vertices(Inflater& in, std::uint32_t flags, std::uint64_t count, PlyMesh& mesh) {
   RETURN_IF_ERROR((read_vectors<From, 3>(in, count, mesh.positions)));
@@ -173,6 +179,7 @@ absl::Status read_vertices(Inflater& in, std::uint32_t flags, std::uint64_t coun
   return absl::OkStatus();
 }
 
+/// Reads `count` triangles and checks the indices of their vertices.
 absl::Status read_triangles(Inflater& in, std::uint64_t count, PlyMesh& mesh) {
   // A triangle has three 32-bit indices, which are 12 bytes.
   if (count == 0 || count > kMaxMeshBytes / 12) {

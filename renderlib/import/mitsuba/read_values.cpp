@@ -26,6 +26,7 @@ absl::Status not_a(const char* what, absl::string_view text) {
       "\"", text.substr(0, kShown), text.size() > kShown ? "…" : "", "\" is not ", what));
 }
 
+/// Reads numbers that are separated by commas or white space.
 absl::StatusOr<std::vector<double>> read_list(absl::string_view text) {
   std::vector<double> numbers;
   for (const std::string& part : parts_of(text)) {
@@ -47,6 +48,7 @@ absl::StatusOr<Rgb> read_hex(absl::string_view text) {
   return Rgb{channel(16), channel(8), channel(0)};
 }
 
+/// Returns the colour of three channels, or the grey of one.
 Rgb rgb_of(const std::vector<double>& numbers) {
   const auto channel = [&](std::size_t i) {
     return static_cast<float>(numbers.size() == 1 ? numbers[0] : numbers[i]);

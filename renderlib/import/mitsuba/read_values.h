@@ -24,15 +24,15 @@ absl::StatusOr<Vec3> read_three(absl::string_view text);
 absl::StatusOr<Rgb> read_rgb(absl::string_view text);
 /// Reads a colour in sRGB: one or three numbers, or "#rrggbb". Returns it as linear RGB.
 absl::StatusOr<Rgb> read_srgb(absl::string_view text);
-/// Adds a sample to a spectrum. INVALID_ARGUMENT: its wavelength in nanometres is not above that of
-/// the sample before.
+/// Appends a sample to `spectrum`. Returns INVALID_ARGUMENT if `nanometres` is not above the
+/// wavelength of the sample before.
 absl::Status add_sample(Spectrum& spectrum, double nanometres, double value);
 /// Reads a number, or "wavelength:value" pairs with increasing wavelengths in nanometres.
 absl::StatusOr<Spectrum> read_spectrum(absl::string_view text);
 /// Reads a spectrum file. Each line has a wavelength in nanometres and a value; the wavelengths
 /// increase. A line that begins with # is a comment.
 absl::StatusOr<Spectrum> read_spectrum_file(absl::string_view text);
-/// Reads the 16 numbers of a 4 x 4 matrix, rows first; its last row must be 0 0 0 1. Also reads the
+/// Reads the 16 numbers of a 4 x 4 matrix, row by row. The last row must be 0 0 0 1. Also reads the
 /// 9 numbers of a 3 x 3 matrix, the linear part of a transform without translation.
 absl::StatusOr<Transform> read_matrix(absl::string_view text);
 

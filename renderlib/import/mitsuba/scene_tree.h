@@ -1,7 +1,7 @@
 #pragma once
 
 // The objects of a Mitsuba scene file, as read_scene_tree() returns them. Includes have been read,
-// parameters replaced and references resolved. The meaning of the objects is not known here.
+// parameters replaced and references resolved. Objects of all kinds have the type Object.
 
 #include <cstdint>
 #include <deque>
@@ -76,13 +76,13 @@ struct Object {
 
 struct SceneTree {
   const Object* root = nullptr;
-  bool is_old = false;         ///< its version is 0.x, not 2 or 3
+  bool is_old = false;         ///< the scene's version is 0.x, not 2 or 3
   std::deque<Object> objects;  ///< all objects; `root` and properties point to them
   std::vector<std::unique_ptr<std::string>> files;  ///< names of the files, for Place::file
   std::vector<std::string> warnings;                ///< warnings about elements that are not known
 };
 
-/// Largest nesting of elements, and of objects by references.
+/// How deep elements may be nested, and how deep objects may contain or refer to objects.
 inline constexpr int kMaxNesting = 50;
 
 }  // namespace bandsaw::mitsuba

@@ -6,8 +6,10 @@
 // A surface is turned if Mitsuba's outside is the inside of Bandsaw's shape. It is turned if the
 // shape has flip_normals or if its material exchanges the two sides (SurfaceMaterial::turned), but
 // not if both hold. For a rectangle, a transform that mirrors (determinant < 0) also exchanges the
-// sides. `open` is a copy of the surface without its interior, because a shape that is not closed
-// cannot contain a medium.
+// sides.
+//
+// A rectangle, a disk and a cylinder are not closed, so they cannot contain a medium. Their
+// functions use `open`, a copy of the surface without its interior.
 
 #include "renderlib/import/mitsuba/shapes.h"
 
@@ -404,8 +406,9 @@ absl::Status ShapeReader::add_sphere(const Parameters& from, const Surface& surf
     return add_made_mesh(from, placed, sphere_mesh(), target);
   }
   const bool uv = needs_uv(surface.bsdf, surface.emitter);
-  // The transform `axes` turns Bandsaw's sphere so that its poles and the seam of its uvs are where
-  // those of Mitsuba's sphere are. Then only v runs in the other direction.
+  // The poles and the seam of the uvs are at different places on Bandsaw's and Mitsuba's spheres.
+  // The transform `axes` turns Bandsaw's sphere so that they coincide. Then the two spheres differ
+  // only in the direction of v.
   const TexturedSurface textured{UvFrame::kFlipped, {}};
   ASSIGN_OR_RETURN(const SurfaceMaterial material,
                    materials_.material_of(surface.bsdf, surface.emitter, textured));

@@ -43,7 +43,9 @@ class ShapeReader {
   /// Adds a shape. Leaves it out with a warning if its type is not known or its file is missing.
   /// Adds nothing for a shapegroup, which group_of() adds.
   absl::Status add_to(const Object& shape, const Target& target);
+  /// Adds a shape of any type except shapegroup, merge and instance.
   absl::Status add_kind(const Parameters& from, const Surface& surface, const Target& target);
+  /// Reads the properties that all kinds of shapes have.
   absl::StatusOr<Surface> surface_of(const Parameters& from);
   absl::Status add_mesh(const Parameters& from, const Surface& surface, const Target& target);
   /// Makes a file of a computed mesh, such as a cylinder, and adds it as a model.
@@ -54,18 +56,19 @@ class ShapeReader {
   absl::Status add_sphere(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_cylinder(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_instance(const Parameters& from, const Target& target);
-  /// Adds a sphere or disk as an instance of a group that `to_world` places. Used if the transform
-  /// changes the form of the shape, or if the uvs of a sphere are needed.
+  /// Makes a group of the sphere or disk `shape`, and adds an instance of the group with the
+  /// placement `to_world`. Used if the transform changes the form of the shape, or if the uvs of a
+  /// sphere are needed.
   absl::Status add_placed(const scene::Shape& shape, const Transform& to_world,
                           const Target& target);
-  /// Adds a model file. Returns INVALID_ARGUMENT, with file and line, if the shape has neither a
-  /// material nor a medium.
+  /// Adds the mesh file `file` as a model. Returns INVALID_ARGUMENT, with file and line, if the
+  /// shape has neither a material nor a medium.
   absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
                          const std::string& material, const Target& target);
   /// Returns the name of the group that a shapegroup becomes. The group is made when it is first
   /// used. The name is empty if all shapes of the group are left out.
   absl::StatusOr<std::string> group_of(const Object& group);
-  /// Warns of a medium in a shape that is not closed.
+  /// For a shape that is not closed: warns if `surface` has a medium inside.
   void warn_of_interior(const Surface& surface, const Parameters& from);
 
   scene::Scene& scene_;

@@ -1,5 +1,5 @@
-// Computes normals and orientation of meshes as Mitsuba does: normals weighted by angles, and
-// triangles that face the side of their normals.
+// Reads PLY meshes, and treats meshes as Mitsuba does: computes vertex normals that are weighted by
+// angles, and turns each triangle to the side of its vertices' normals.
 
 #include "renderlib/import/mitsuba/source_mesh.h"
 

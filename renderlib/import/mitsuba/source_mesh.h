@@ -17,21 +17,21 @@ struct SourceMesh {
   /// none.
   PlyMesh mesh;
   std::vector<MeshAttribute> attributes;  ///< for mesh_attribute textures
-  bool faceted = false;                   ///< the file itself requests face normals
+  bool faceted = false;                   ///< the file requests flat triangles (face normals)
 };
 
 /// Maximum size of a mesh file, and of a mesh in memory, in bytes.
 inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 /// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.
-/// `flip_v` says that v = 0 is the bottom row in the file, as is usual in OBJ files; v then becomes
-/// 1 - v. An error is INVALID_ARGUMENT and names the line.
+/// If `flip_v` is set, v = 0 is the bottom row in the file, as is usual in OBJ files, and each v
+/// becomes 1 - v. An error is INVALID_ARGUMENT and names the line.
 absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
-/// Reads a PLY (convert/read_ply.h). `flip_v` as in read_obj(). Returns INVALID_ARGUMENT if the
-/// file is damaged.
+/// Reads a PLY (convert/read_ply.h). `flip_v` means the same as in read_obj(). Returns
+/// INVALID_ARGUMENT if the file is damaged.
 absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v);
-/// Reads the mesh number `index`, counted from 0, of a *.serialized file of Mitsuba. `flip_v` as in
-/// read_obj(). Returns INVALID_ARGUMENT if the file is damaged or has no such mesh.
+/// Reads the mesh number `index`, counted from 0, of a *.serialized file of Mitsuba. `flip_v` means
+/// the same as in read_obj(). Returns INVALID_ARGUMENT if the file is damaged or has no such mesh.
 absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t index,
                                            bool flip_v);
 

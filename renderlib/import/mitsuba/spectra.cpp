@@ -23,7 +23,7 @@ Rgb rounded(const spectrum::Rgb3& c) {
   return {channel(c[0]), channel(c[1]), channel(c[2])};
 }
 
-/// Wavelengths of the tables of metals.
+/// Wavelengths of the tables of metals, in nanometres.
 const std::vector<double>& metal_wavelengths() {
   static const std::vector<double> all = {380, 410, 440, 470, 500, 530, 560,
                                           590, 620, 650, 680, 710, 740, 780};
@@ -110,8 +110,8 @@ Rgb rgb_of(const Spectrum& spectrum, ColorOf of) {
 
 Rgb rgb_of(const BlackBody& body) {
   // Mitsuba's values are Planck's radiance in watts per square metre, steradian and nanometre.
-  // `relative` is the colour of the spectrum divided by its maximum. The maximum is `radiance`, at
-  // the wavelength `peak`.
+  // The spectrum has its maximum `radiance` at the wavelength `peak`. `relative` is the colour of
+  // the spectrum after a division by this maximum.
   const double kelvin = std::clamp(body.kelvin, 100.0, 1e5);
   const spectrum::Rgb3 relative = spectrum::light_rgb(spectrum::blackbody(kelvin));
   constexpr double kWien = 2.897771955e-3;          // Wien's displacement constant, m K

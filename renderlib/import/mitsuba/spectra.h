@@ -1,6 +1,7 @@
 #pragma once
 
-// Converts spectra of Mitsuba scenes to linear RGB, as Mitsuba's RGB variants do.
+// Converts spectra of Mitsuba scenes to linear RGB, as Mitsuba does in its variants that render in
+// RGB.
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/mitsuba/parameters.h"
@@ -9,8 +10,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// Returns the colour of a spectrum. The spectrum of a surface is multiplied by D65; the spectrum
-/// of a light is not. Channels below 0 become 0.
+/// Returns the colour of a spectrum. The spectrum of a surface is multiplied by the illuminant D65.
+/// The spectrum of a light is not. Channels below 0 become 0.
 Rgb rgb_of(const Spectrum& spectrum, ColorOf of);
 /// Returns the colour of the radiance of a black body, with the temperature clamped to [100, 1e5]
 /// K.
@@ -29,7 +30,8 @@ struct MetalIndex {
   Rgb eta;
   Rgb k;
 };
-/// Returns the index of the metal with this name ("Cu"); NOT_FOUND if the name is not known.
+/// Returns the complex index of the metal with this name ("Cu"); NOT_FOUND if the name is not
+/// known.
 absl::StatusOr<MetalIndex> metal_of(const std::string& name);
 
 }  // namespace bandsaw::mitsuba

@@ -30,7 +30,7 @@ const Object* object_in(const Value& value) {
 /// Returns the map from Mitsuba's uv to the coordinates of the texture.
 absl::StatusOr<Affine> to_uv_of(const Parameters& from) {
   ASSIGN_OR_RETURN(const Transform t, from.transform("to_uv"));
-  // Version 0.x has these numbers instead of to_uv.
+  // Version 0.x has the following numbers instead of to_uv.
   ASSIGN_OR_RETURN(const double u_scale, from.number("uscale", 1));
   ASSIGN_OR_RETURN(const double v_scale, from.number("vscale", 1));
   ASSIGN_OR_RETURN(const double u_offset, from.number("uoffset", 0));
@@ -78,6 +78,7 @@ bool set_uv(const Affine& m, scene::ImageTexture& to) {
   return std::abs(shear) <= 1e-9 * (std::abs(u_scale) + std::abs(v_scale));
 }
 
+/// Sets the uv placement of the image texture `to`. Warns if the placement shears.
 absl::Status place_texture(const Parameters& from, UvFrame frame, scene::ImageTexture& to,
                            Conversion& conversion) {
   ASSIGN_OR_RETURN(const Affine to_uv, to_uv_of(from));
@@ -94,6 +95,7 @@ absl::StatusOr<scene::ImageTexture::Wrap> wrap_of(const Parameters& from) {
                             : scene::ImageTexture::WRAP_REPEAT;
 }
 
+/// Converts an image texture. If the file is missing, returns grey, with a warning.
 absl::StatusOr<scene::Texture> bitmap(const Parameters& from, const TexturedSurface& surface,
                                       Conversion& to) {
   ASSIGN_OR_RETURN(const std::string name, from.text("filename", ""));
@@ -159,8 +161,8 @@ absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
   const bool whole = rows == std::floor(rows);
   scene::Texture out;
   if (upright && (surface.frame == UvFrame::kSame || whole)) {
-    // If v is flipped, the rows of cells are counted from the other end. If their number is even,
-    // the first row then starts with the other colour.
+    // If v is flipped, Mitsuba's last row of cells is our first row. If the number of rows is even,
+    // our first row begins with color1.
     const bool swap = surface.frame == UvFrame::kFlipped && std::fmod(rows, 2) == 0;
     *out.mutable_checker()->mutable_even() = swap ? color1 : color0;
     *out.mutable_checker()->mutable_odd() = swap ? color0 : color1;
@@ -179,6 +181,8 @@ absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
   return out;
 }
 
+/// Returns the image of a mesh attribute. If the shape has no such attribute, returns grey, with a
+/// warning.
 absl::StatusOr<scene::Texture> mesh_attribute(const Parameters& from,
                                               const TexturedSurface& surface, Conversion& to) {
   ASSIGN_OR_RETURN(const std::string name, from.text("name", ""));
@@ -230,6 +234,7 @@ absl::StatusOr<std::optional<Rgb>> constant_of(const Parameters& from, ColorOf o
   return std::optional<Rgb>();
 }
 
+/// Converts an object. An object of unknown type becomes grey, with a warning.
 absl::StatusOr<scene::Texture> object_texture(const Object& object, ColorOf of,
                                               const TexturedSurface& surface, Conversion& to) {
   const Parameters from(object);

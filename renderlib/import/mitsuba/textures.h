@@ -14,11 +14,11 @@
 
 namespace bandsaw::mitsuba {
 
-/// The relation of the uv coordinates of our surface to Mitsuba's, where v = 0 is the top row of an
+/// How our uv coordinates of a surface relate to Mitsuba's. In Mitsuba, v = 0 is the top row of an
 /// image.
 enum class UvFrame {
   kSame,
-  kFlipped,  ///< v of ours is 1 - v of Mitsuba's
+  kFlipped,  ///< our v is 1 - Mitsuba's v
 };
 
 /// The properties of a surface that its textures depend on.
@@ -45,7 +45,8 @@ void set_color(const Rgb& color, scene::Color* to);
 /// Returns a texture of one colour.
 scene::Texture constant_texture(const Rgb& color);
 
-/// Returns the constant colour of a value; std::nullopt if it is a texture that varies.
+/// Returns the constant colour of the property's value; std::nullopt if the value is a texture that
+/// varies.
 absl::StatusOr<std::optional<Rgb>> constant_color(const Property& property, ColorOf of);
 
 /// Converts a value to a texture. Returns INVALID_ARGUMENT with the place of the property if the

@@ -17,6 +17,7 @@ namespace {
 constexpr std::int64_t kMaxSide = 65536;
 constexpr std::int64_t kMaxDepth = 1024;
 
+/// Appends x, y and z.
 void set(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.x);
   to->Add(v.y);
@@ -35,6 +36,7 @@ struct Film {
   double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
 };
 
+/// Converts the reconstruction filter of a film. Any type except box and tent becomes a Gaussian.
 absl::Status read_filter(const Object& filter, scene::Image& image, Conversion& to) {
   const Parameters from(filter);
   if (filter.type == "box") {
@@ -50,13 +52,14 @@ absl::Status read_filter(const Object& filter, scene::Image& image, Conversion& 
       from.ignore({"a", "b", "B", "C", "lobes", "radius"});
     }
     ASSIGN_OR_RETURN(const double deviation, from.number("stddev", 0.5));
-    // PixelFilter's Gaussian ends at three deviations.
+    // Bandsaw's Gaussian filter ends at three standard deviations.
     image.mutable_filter()->mutable_gaussian()->set_radius(std::clamp(3 * deviation, 0.0, 16.0));
   }
   to.warn_of_unused(from);
   return absl::OkStatus();
 }
 
+/// Returns the width or height `name` in pixels; `otherwise` if it is absent.
 absl::StatusOr<std::int64_t> side_of(const Parameters& from, const char* name,
                                      std::int64_t otherwise) {
   ASSIGN_OR_RETURN(const std::int64_t side, from.integer(name, otherwise));
@@ -120,6 +123,7 @@ void set_window(const Film& film, double shift_x, double shift_y, scene::Camera&
   }
 }
 
+/// Sets the field of view and the shift of a perspective camera.
 absl::Status set_perspective(const Parameters& from, const Film& film, scene::Camera& camera) {
   ASSIGN_OR_RETURN(const double half_height, half_height_of_view(from, film.aspect()));
   camera.set_vertical_fov(vertical_fov(half_height));
@@ -129,6 +133,7 @@ absl::Status set_perspective(const Parameters& from, const Film& film, scene::Ca
   return absl::OkStatus();
 }
 
+/// Sets the aperture and the focus distance of a thin lens.
 absl::Status set_lens(const Parameters& from, scene::Camera& camera) {
   ASSIGN_OR_RETURN(const double radius, from.number("aperture_radius", 0));
   ASSIGN_OR_RETURN(const double distance, from.number("focus_distance", 1e4));
@@ -219,7 +224,7 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          " shows only light sources; max_depth 2, which is "
                                          "direct light, is used instead"));
     }
-    // These integrators do not count the passage through a thin pane towards max_depth.
+    // volpath and volpathmis do not count the passage through a thin pane towards max_depth.
     to.passages_are_free = type == "volpath" || type == "volpathmis";
     // Mitsuba's limit counts the segments of a path; Bandsaw's counts the vertices between them.
     out.set_max_depth(static_cast<std::uint32_t>(

@@ -11,7 +11,8 @@ namespace bandsaw::mitsuba {
 /// Sets the camera and the image of `scene`. Returns INVALID_ARGUMENT, with file and line, for an
 /// unknown type of sensor and for a value that is not valid.
 absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& to);
-/// Sets the kind and the depth of the scene's integrator.
+/// Sets the kind and the maximum path depth of the scene's integrator, and
+/// Conversion::passages_are_free.
 absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conversion& to);
 
 }  // namespace bandsaw::mitsuba
