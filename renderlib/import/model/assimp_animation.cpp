@@ -1,4 +1,5 @@
-// Reads an animation of a model that Assimp has read: converts each channel to curves in seconds.
+// Converts an animation that Assimp has read. Each channel, which has the keys of one node or mesh,
+// becomes curves over the time in seconds.
 
 #include "renderlib/import/model/assimp_animation.h"
 
@@ -47,6 +48,7 @@ std::optional<Curve> curve_of(const Key* keys, unsigned count, std::size_t width
                                              Interpolation::kLinear));
 }
 
+/// Returns the motion of the node of a channel. A part of the motion without usable keys is absent.
 NodeMotion motion_of_channel(const aiNodeAnim& channel, double ticks) {
   NodeMotion motion;
   motion.translation = curve_of(channel.mPositionKeys, channel.mNumPositionKeys, 3, ticks);

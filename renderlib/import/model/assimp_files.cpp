@@ -1,5 +1,6 @@
-// The file systems through which Assimp opens files. Both classes give it the files as bytes in
-// memory. AssimpFiles finds them by SceneFolder, so Assimp cannot open any other file.
+// The file systems through which Assimp opens files: AssimpFiles and PlainGltfFiles. They give
+// Assimp the bytes of a file in memory. AssimpFiles finds files by SceneFolder, so Assimp cannot
+// open a file outside of the scene's folder.
 
 #include "renderlib/import/model/assimp_files.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Assimp opens files only through the file systems of this header. AssimpFiles gives it the files
-// of the scene's folder, read only. PlainGltfFiles gives it a rewritten glTF document in memory.
+// Assimp opens files only through the file systems of this header. With AssimpFiles, Assimp
+// reads files of the scene's folder. With PlainGltfFiles, Assimp reads a rewritten glTF document in
+// memory.
 
 #include <assimp/IOSystem.hpp>
 
@@ -32,6 +33,7 @@ struct ModelSource {
   std::optional<absl::string_view> bytes;  ///< set for a model in memory; MUST outlive the reading
 };
 
+/// The files of the scene's folder. They cannot be written.
 class AssimpFiles : public Assimp::IOSystem {
  public:
   /// The names of files other than the model are relative to the model's folder. The options of MTL
@@ -52,8 +54,8 @@ class AssimpFiles : public Assimp::IOSystem {
 
  private:
   /// Returns the real path of a file. Returns NOT_FOUND if it is missing, PERMISSION_DENIED if it
-  /// lies outside of the scene's folder or may not be read, and INVALID_ARGUMENT if `file` is not
-  /// the name of a regular file.
+  /// lies outside of the scene's folder or may not be read, and INVALID_ARGUMENT if `file` does
+  /// not name a regular file.
   absl::StatusOr<std::string> find(const std::string& file) const;
   bool is_in_memory(const char* file) const { return model_.bytes && file == model_.path; }
   const SceneFolder& folder_;

@@ -19,20 +19,22 @@ double number(const pugi::xml_node& in, const char* name) {
   return value > 0 ? value : 0;
 }
 
-// Returns the vertical field of view in radians; std::nullopt if the file has no angle. The angles
-// in the file are in degrees. xfov is used only if there is no yfov. `aspect` is width / height.
+// Returns a perspective camera's vertical field of view in radians; std::nullopt if the file has no
+// angle. The angles in the file are in degrees. xfov is used only if there is no yfov. `aspect` is
+// width / height.
 std::optional<double> vertical_fov(const pugi::xml_node& perspective, double aspect) {
   const double vertical = number(perspective, "yfov");
   const double horizontal = number(perspective, "xfov");
   if (vertical > 0 || horizontal == 0) {
     return vertical > 0 ? std::optional(vertical * kPi / 180) : std::nullopt;
   }
-  const SinCos half = sincos_turns(horizontal / 720);  // of half the angle
+  const SinCos half = sincos_turns(horizontal / 720);  // sine and cosine of half the angle
   return 2 * atan2(half.sin, half.cos * aspect);
 }
 
-// Returns the whole height; std::nullopt if the file has none. ymag and xmag are half of the height
-// and half of the width. xmag is used only if there is no ymag. `aspect` is width / height.
+// Returns the whole height of an orthographic camera; std::nullopt if the file has none. ymag and
+// xmag are half of the height and half of the width. xmag is used only if there is no ymag.
+// `aspect` is width / height.
 std::optional<double> height(const pugi::xml_node& orthographic, double aspect) {
   const double vertical = number(orthographic, "ymag");
   const double half = vertical > 0 ? vertical : number(orthographic, "xmag") / aspect;

@@ -21,7 +21,8 @@ struct ColladaLens {
 /// Returns true if the name ends with .dae, in upper or lower case.
 bool is_collada(absl::string_view path);
 
-/// Lenses keyed by the names that Assimp gives their nodes: a node's id, or its sid.
+/// Lenses keyed by the name that Assimp gives the camera's node: the id of the node, or its sid if
+/// it has no id.
 using ColladaLenses = std::map<std::string, ColladaLens>;
 
 /// Returns the lenses in the XML `text` of a file. A lens without a valid size or angle is left

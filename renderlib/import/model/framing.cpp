@@ -1,5 +1,5 @@
-// frame() places a camera so that it sees all vertices from the front, a little from the right and
-// from above, as near as possible.
+// Places a camera in front of a model, a little to the right and above. The camera is as near as it
+// can be while it sees all vertices.
 
 #include "renderlib/import/model/framing.h"
 

@@ -10,10 +10,10 @@
 
 namespace bandsaw {
 
-/// Returns a camera in front of the model (+z, as in glTF), a little to the right and above. It
-/// sees all vertices of the instances, except those of groups, and is as close as possible with a
-/// margin of 6 % of the image. Without instances it is the default camera. `aspect_ratio`: width /
-/// height.
+/// Returns a camera in front of the model (+z, as in glTF), a little to the right and above. The
+/// camera sees all vertices of the instances of meshes; instances of groups are ignored. It is as
+/// close as possible with a margin of 6 % of the image. Without instances, returns the default
+/// camera. `aspect_ratio` is width / height.
 PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& instances,
                         double aspect_ratio);
 

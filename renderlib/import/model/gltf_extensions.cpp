@@ -91,6 +91,7 @@ UvTransform transform_of(const Json& from) {
            turn.sin * scale_u, turn.cos * scale_v, 1 - offset_v - turn.cos * scale_v}};
 }
 
+// Reads a textureInfo. A transform that is not finite becomes the identity.
 GltfTexture texture_of(const Json& from) {
   GltfTexture to;
   double uv_set = number(from, "texCoord").value_or(0);
@@ -106,6 +107,7 @@ GltfTexture texture_of(const Json& from) {
   return to;
 }
 
+// Reads all textureInfos that are members of `from`.
 void read_textures_of(const Json& from, GltfMaterial& to) {
   for (const auto& [name, value] : from.items()) {
     if (absl::EndsWith(name, "Texture") && value.is_object()) {
@@ -115,7 +117,7 @@ void read_textures_of(const Json& from, GltfMaterial& to) {
 }
 
 /// Reads an array of three numbers. Returns `otherwise` if there is no such array. An element that
-/// is not a number is replaced by that of `otherwise`.
+/// is not a number is replaced by the element of `otherwise`.
 std::array<double, 3> triple_of(const Json& in, const std::string& name,
                                 std::array<double, 3> otherwise) {
   const Json* values = list(in, name);
@@ -125,6 +127,7 @@ std::array<double, 3> triple_of(const Json& in, const std::string& name,
   return otherwise;
 }
 
+/// Reads the extension KHR_materials_specular.
 GltfSpecular specular_of(const Json& from) {
   GltfSpecular to;
   to.factor = number(from, "specularFactor").value_or(1);
@@ -134,6 +137,7 @@ GltfSpecular specular_of(const Json& from) {
   return to;
 }
 
+/// Reads KHR_materials_volume of a material; std::nullopt if the material has no volume.
 std::optional<GltfVolume> volume_of(const Json& material) {
   const Json* from = extension(material, "KHR_materials_volume");
   if (from == nullptr) {
@@ -173,6 +177,7 @@ std::vector<std::string> unsupported_features_of(const Json& material) {
   return out;
 }
 
+/// Reads a material of the JSON.
 GltfMaterial material_of(const Json& from) {
   GltfMaterial to;
   to.name = name_in(from);

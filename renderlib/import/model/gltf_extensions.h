@@ -1,8 +1,8 @@
 #pragma once
 
-// Reads those parts of a glTF file from its JSON that Assimp 5.2 does not pass on: used extensions,
-// transforms of textures, strength of emission, nodes of cameras, number of scenes. The functions
-// that convert materials and nodes (model_*.cpp) combine them with Assimp's result.
+// Reads from a glTF file's JSON what Assimp 5.2 does not pass on: used extensions, transforms of
+// textures, strength of emission, nodes of cameras, number of scenes. The functions that convert
+// materials and nodes (model_*.cpp) combine these values with Assimp's result.
 
 #include <array>
 #include <limits>
@@ -17,7 +17,7 @@
 
 namespace bandsaw {
 
-/// A textureInfo of a material.
+/// A textureInfo of a material: how the material uses a texture.
 struct GltfTexture {
   unsigned uv_set = 0;
   UvTransform transform;  ///< KHR_texture_transform, for uvs whose v = 0 is the bottom row

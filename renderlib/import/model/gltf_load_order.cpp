@@ -1,5 +1,5 @@
-// Repeats the traversal of Assimp's glTF loader on the JSON, and notes what Assimp loads in which
-// order.
+// Repeats the traversal of Assimp's glTF loader on the JSON, and notes the order in which Assimp
+// loads materials, cameras, lights and nodes.
 
 #include "renderlib/import/model/gltf_load_order.h"
 
@@ -28,6 +28,7 @@ class Walk {
  public:
   explicit Walk(const Json& root) : root_(root) {}
 
+  /// Visits the nodes of the default scene and fills `order`.
   void run() {
     const Json* scene = item(root_, "scenes", number(root_, "scene").value_or(0));
     const Json* roots = scene == nullptr ? nullptr : list(*scene, "nodes");
@@ -126,7 +127,7 @@ class Walk {
   Loaded lights_;
   Loaded first_meshes_;     ///< meshes, with Assimp's number of their first primitive
   std::size_t meshes_ = 0;  ///< number of Assimp's meshes
-  std::map<const Json*, const Json*> skins_;  ///< skins of meshes
+  std::map<const Json*, const Json*> skins_;  ///< meshes with a skin, and their skins
 };
 
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 
-// Computes the order in which Assimp 5.2 loads the objects of a glTF file. By their place in this
-// order, objects of Assimp's result are matched with those of the JSON, because names may be
-// missing or shared.
+// Computes the order in which Assimp 5.2 loads the objects of a glTF file. The place in this order
+// shows which object of Assimp's result belongs to which object of the JSON. Names cannot show
+// this, because they may be missing or shared.
 
 #include <cstddef>
 #include <map>
@@ -19,7 +19,7 @@ namespace bandsaw {
 struct GltfAtNode {
   std::size_t node = 0;    ///< index of the node in Assimp's tree, parents first
   std::size_t loaded = 0;  ///< index among the objects of its kind, in Assimp's order
-  std::string name;        ///< its own name, not its node's; may be empty
+  std::string name;        ///< of the camera or light, not of the node; may be empty
   /// The vertical field of view of a perspective camera, in radians. Assimp passes on a horizontal
   /// field of view, which its versions compute in different ways.
   std::optional<double> vertical_fov;

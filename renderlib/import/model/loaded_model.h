@@ -1,7 +1,7 @@
 #pragma once
 
-// A model file as Assimp has read it, before its animation is evaluated at a time. It is kept while
-// the frames of a sequence are imported (draft/import_memory.h).
+// A model file as Assimp has read it, before its animation is evaluated at a time. A
+// LoadedModel is kept while the frames of a sequence are imported (draft/import_memory.h).
 
 #include <assimp/Importer.hpp>
 
@@ -29,8 +29,8 @@ struct StillMesh {
   std::vector<std::string> warnings;  ///< warnings of the conversion; repeated for each frame
 };
 
-/// Still meshes of one model, keyed by Assimp's number, by whether they have colours, and by the
-/// two uv sets.
+/// Still meshes of one model. The key is Assimp's number of the mesh, whether its colours were
+/// read, and the numbers of its two uv sets.
 using StillMeshes = std::map<std::tuple<unsigned, bool, unsigned, unsigned>, StillMesh>;
 
 struct LoadedModel {

@@ -22,6 +22,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns our wrap mode. Assimp's decal mode, without texels outside of the image, becomes kClamp.
 ImageTexture::Wrap wrap_of(aiTextureMapMode mode) {
   switch (mode) {
     case aiTextureMapMode_Clamp:
@@ -62,8 +63,9 @@ std::string without_space(const aiString& name) {
   return std::string(absl::StripAsciiWhitespace(name.C_Str()));
 }
 
-/// Returns true if the image is 8-bit and its texels look like directions, 0.5 + 0.5 n, that mostly
-/// point away from the surface: the mean of x and y is about 0 and that of z near 1.
+/// Returns true if the image is 8-bit and its texels look like encoded directions (0.5 + 0.5 n)
+/// that mostly point away from the surface: the means of x and y are near 0, and the mean of z is
+/// near 1.
 bool looks_like_normals(const ImageTexture& image) {
   if (image.format == ImageTexture::Format::kFloat32 || image.channels != 3) {
     return false;
@@ -137,8 +139,8 @@ void MaterialReader::find_dead_files() {
 }
 
 const GltfMaterial* MaterialReader::gltf() const {
-  // The materials of the JSON are in Assimp's order. The one at this index is right if it has the
-  // same name or no name. Otherwise the material is found by its name.
+  // The materials of the JSON are in Assimp's order. The JSON's material at index_ is right if it
+  // has the same name or no name. Otherwise the material is found by its name.
   const std::vector<GltfMaterial>& all = file_.gltf.materials;
   aiString name;
   material_.Get(AI_MATKEY_NAME, name);

@@ -25,7 +25,8 @@ class MaterialReader {
 
   const aiMaterial& material() const { return material_; }
   ModelKind kind() const { return file_.kind; }
-  /// Returns nullptr for formats other than glTF 2.
+  /// Returns the material in the JSON of glTF 2; nullptr for other formats, and for a material that
+  /// Assimp made.
   const GltfMaterial* gltf() const;
   SceneDraft& draft() const { return file_.draft; }
 
@@ -63,8 +64,9 @@ class MaterialReader {
   absl::StatusOr<TextureId> opacity_map(Slot slot);
   /// Returns a normal map that is computed from the height map in the slot.
   absl::StatusOr<TextureId> bump_map(Slot slot);
-  /// Returns a texture for MetallicRoughness::index_map. With it, the reflectance at normal
-  /// incidence (F0) is that of the index of refraction `index` (> 1) times the texel of the slot.
+  /// Returns a texture for MetallicRoughness::index_map. With this texture, the
+  /// reflectance at normal incidence is F0 times the texel of the slot. F0 is the reflectance at
+  /// normal incidence of the index of refraction `index` (> 1).
   absl::StatusOr<TextureId> index_map(Slot slot, double index);
   /// Returns true if the height map in the slot contains normals instead of heights, as is common.
   bool holds_normals(Slot slot) const;
@@ -78,13 +80,16 @@ class MaterialReader {
 
  private:
   std::string name() const;  ///< as in the file
+  /// Returns the name of the texture's file as in the model; "" if there is no texture.
   std::string file_of(Slot slot) const;
   /// Returns the wrap modes, filter, transform and uv set of a texture.
   TextureStore::Use use_of(Slot slot);
+  /// Adds the texture in the slot to the draft, as `use` describes.
   absl::StatusOr<TextureId> find(Slot slot, const TextureStore::Use& use);
   /// Returns the material's set for Assimp's number of a uv set. A third set is replaced by the
   /// first, with a warning.
   UvSet uv_set_of(unsigned assimp_set);
+  /// Fills dead_files_, with a warning for each file.
   void find_dead_files();
   /// Returns the error with the names of the model and the material before its message.
   absl::Status failed(const absl::Status& why) const;

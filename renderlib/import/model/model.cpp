@@ -96,6 +96,7 @@ void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file)
   }
 }
 
+// Returns the kind of a model file by the suffix of its name.
 ModelKind kind_of(const std::string& path) {
   const std::string lower = absl::AsciiStrToLower(path);
   const auto is = [&](absl::string_view suffix) { return absl::EndsWith(lower, suffix); };
@@ -105,10 +106,10 @@ ModelKind kind_of(const std::string& path) {
                                                   : ModelKind::kOther;
 }
 
-// Returns the rotation that turns the scene of an FBX file to +y up, +z front and +x right; the
-// file's metadata name its axes. Assimp 5.2 does not rotate the scene. Assimp 5.4 rotates it and
-// scales it by the file's unit in the root node; this is undone here, so that all versions give the
-// same scene. Returns the identity if the metadata do not name valid axes.
+// Returns the transform that turns the scene of an FBX file to +y up, +z front and +x right. The
+// file's metadata name its axes. Returns the identity if they do not name valid axes. Assimp 5.2
+// does not rotate the scene. Assimp 5.4 rotates and scales the scene in the root node. The result
+// undoes the transform of the root node, so that all versions give the same scene.
 Transform upright(const aiScene& scene) {
   struct Axis {
     const char* name;
@@ -158,6 +159,7 @@ void turn(const Transform& by, Model& model) {
   }
 }
 
+// Returns the numbers of the materials that meshes use.
 std::set<unsigned> used_materials(const aiScene& scene) {
   std::set<unsigned> used;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -168,6 +170,7 @@ std::set<unsigned> used_materials(const aiScene& scene) {
   return used;
 }
 
+// Returns the error `why` of reading a glTF file, with the file's name before the message.
 absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
   const bool is_broken = absl::IsInvalidArgument(why);
   return absl::Status(why.code(),
@@ -274,7 +277,8 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& sourc
   return model;
 }
 
-/// Returns the loaded file. It is kept in `draft.memory`, so that further frames do not read it.
+/// Returns the loaded file. The LoadedModel is kept in `draft.memory`, so that further frames do
+/// not read it.
 absl::StatusOr<std::shared_ptr<LoadedModel>> loaded_model(const ModelSource& source,
                                                           const AnimationChoice& animation,
                                                           SceneDraft& draft) {
@@ -317,7 +321,8 @@ absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoi
 
   std::vector<ModelMaterial> materials(scene->mNumMaterials);
   if (with_materials) {
-    // Assimp adds a default material, and files contain unused ones; only used ones are read.
+    // Assimp adds a default material, and files contain unused materials. Only materials that a
+    // mesh uses are read.
     for (const unsigned used : used_materials(*scene)) {
       ASSIGN_OR_RETURN(materials[used], read_model_material(file, used));
     }

@@ -19,17 +19,17 @@ namespace bandsaw {
 
 struct ModelCamera {
   std::string name;      ///< name of its node
-  std::string own_name;  ///< may be empty or shared with other nodes' cameras
-  Camera camera;         ///< in the model's own space, when the shutter opens
-  std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
+  std::string own_name;  ///< the camera's name; may be empty or shared with other cameras
+  Camera camera;         ///< at the start of the shutter interval, in the model's own space
+  std::optional<Camera> at_close = std::nullopt;  ///< at the end, if the camera moves
 };
 
 /// A model whose meshes, materials and textures have been added to the SceneDraft (the scene while
 /// it is being read); its placements have not.
 struct Model {
-  std::vector<Frame> frames = {};         ///< moving coordinate systems: one for each moving node
-  std::vector<Instance> instances = {};   ///< placed in the model's space, or in one of `frames`
-  std::vector<Instance> filled = {};      ///< closed meshes with a medium inside, placed likewise
+  std::vector<Frame> frames = {};        ///< moving coordinate systems: one for each moving node
+  std::vector<Instance> instances = {};  ///< placed in the model's space, or in one of `frames`
+  std::vector<Instance> filled = {};  ///< closed meshes with a medium inside, placed as `instances`
   std::vector<ModelCamera> cameras = {};  ///< in the order of the nodes
   std::vector<DeltaLight> lights = {};    ///< in the model's space
 };

@@ -39,12 +39,13 @@ bool shines(const MaterialReader& reader, double exponent) {
   const bool matte = model == aiShadingMode_Flat || model == aiShadingMode_Gouraud ||
                      model == aiShadingMode_NoShading || model == aiShadingMode_OrenNayar ||
                      model == aiShadingMode_Minnaert;
-  // Assimp supports MTL's illumination models 0 to 2; from 2 on they have a highlight.
+  // MTL's illumination models have a highlight from number 2 on. Assimp knows only 0 to 2.
   int mtl_model = 0;
   reader.material().Get("$mat.illum", 0, 0, mtl_model);
   return (!matte || mtl_model >= 2) && exponent >= 1 && reader.kind() != ModelKind::kPlain;
 }
 
+// Returns the opacity. `mapped` says whether the material has an opacity map.
 double opacity_of(MaterialReader& reader, bool mapped) {
   const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
   if (opacity == 0 && !mapped) {
@@ -58,8 +59,8 @@ double opacity_of(MaterialReader& reader, bool mapped) {
 
 // Returns the colour with which the texture and vertex colours are multiplied. A model without a
 // colour is grey, or white if it has a texture or vertex colours, which grey would darken. In
-// formats without materials Assimp's colour is ignored, because it is always white. `textured`: the
-// colour has a texture.
+// formats without materials Assimp's colour is ignored, because it is always white. `textured` says
+// whether the colour has a texture.
 Rgb base_color(const MaterialReader& reader, bool textured) {
   const bool painted = textured || reader.has_vertex_colors();
   const Rgb missing = painted ? Rgb{1, 1, 1} : gray(0.8f);
@@ -71,6 +72,7 @@ Rgb base_color(const MaterialReader& reader, bool textured) {
   return textured && is_black(base) ? Rgb{1, 1, 1} : base;
 }
 
+// Reads the numbers and colours of the material.
 Classic read_numbers(MaterialReader& reader) {
   Classic from;
   from.textured = reader.has({aiTextureType_DIFFUSE}) || reader.has({aiTextureType_BASE_COLOR});

@@ -25,9 +25,8 @@ enum class ModelKind {
   kOther,
 };
 
-/// A model while it is converted and added to `draft`, the unfinished scene. The references to
-/// the scene, the JSON's values, the options of MTL files, the lenses, the animation and the still
-/// meshes are those of a LoadedModel (model/loaded_model.h).
+/// A model while it is converted and added to `draft`, the unfinished scene. All references
+/// except `path` and `draft` refer to parts of one LoadedModel (model/loaded_model.h).
 struct ModelFile {
   const aiScene& scene;
   const std::string& path;  ///< real path
@@ -36,7 +35,7 @@ struct ModelFile {
   const MtlOptions& mtl;                      ///< set for kObj
   const ColladaLenses& lenses;                ///< set for COLLADA
   const std::optional<Animation>& animation;  ///< the chosen one; std::nullopt: rest pose
-  StillMeshes& still_meshes;
+  StillMeshes& still_meshes;                  ///< converted meshes that no animation changes
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};
 

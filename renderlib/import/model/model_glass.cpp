@@ -1,5 +1,5 @@
-// Reads solid glass of glTF: makes the glass of a material with KHR_materials_volume, and gives it,
-// with a medium inside, to the closed meshes of that material.
+// Reads solid glass of glTF. glass_of() makes the glass of a material with KHR_materials_volume.
+// fill_glass() gives the glass, with a medium inside, to the closed meshes of the material.
 
 #include "renderlib/import/model/model_glass.h"
 
@@ -16,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the absorption per unit of length with which white light has the volume's
-/// attenuation_color after its attenuation_distance (Beer and Lambert).
+/// Returns the absorption of the volume per unit of length. White light that travels the
+/// attenuation_distance gets the attenuation_color (law of Beer and Lambert).
 Rgb absorption_of(const GltfVolume& volume) {
   const auto channel = [&](double color) {
     constexpr double kMinColor = 1e-6;  // darker colours are practically opaque
@@ -40,6 +40,7 @@ bool has_more_than_glass(const MaterialReader& reader, const Material& material)
          !is_black(material.emission.radiance.factor);
 }
 
+/// Returns true if KHR_materials_specular changes the reflection.
 bool has_effect(const GltfSpecular& specular) {
   return specular.factor != 1 || specular.color != std::array<double, 3>{1, 1, 1};
 }

@@ -13,12 +13,12 @@
 
 namespace bandsaw {
 
-/// Returns the glass of a material (MetallicRoughness) that bounds a volume: smooth or rough, with
-/// its absorption. The index of refraction of `material` includes the effect of
-/// KHR_materials_specular, which changes only the reflection. The index of the glass is
-/// `index_of_refraction`, which does not include this effect. Returns std::nullopt if the material
-/// has no volume or no transmission. Returns std::nullopt with a warning if the material is not
-/// fully transmissive, is a metal or is not opaque.
+/// Returns the glass of `material`, a MetallicRoughness that bounds a volume. The glass is smooth
+/// or rough, and has the absorption of the volume. The index of refraction of `material` includes
+/// the effect of KHR_materials_specular, which changes only the reflection. The index of the glass
+/// is `index_of_refraction`, which does not include this effect. Returns std::nullopt if the
+/// material has no volume or no transmission. Returns std::nullopt with a warning if the material
+/// is not fully transmissive, is a metal or is not opaque.
 std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material,
                                              double index_of_refraction);
 

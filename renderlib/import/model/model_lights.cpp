@@ -50,13 +50,15 @@ Rgb intensity_of(const aiLight& from, ModelFile& file) {
   return brightness_of(from) * (at_one > 0 && std::isfinite(at_one) ? 1 / at_one : 1.0f);
 }
 
-/// Returns a unit vector; std::nullopt if the node's transform is singular.
+/// Returns the direction of a light as a unit vector; std::nullopt if the node's transform is
+/// singular.
 std::optional<Vec3> direction_of(const aiLight& from, const Transform& node) {
   const Vec3 d = node.direction(vector_of(from.mDirection));
   const double size = length(d);
   return size > 0 && std::isfinite(size) ? std::optional(d / size) : std::nullopt;
 }
 
+/// Returns the number of directional lights.
 std::size_t directional_lights(const Model& model) {
   return static_cast<std::size_t>(std::count_if(
       model.lights.begin(), model.lights.end(),
@@ -66,8 +68,9 @@ std::size_t directional_lights(const Model& model) {
 /// Returns true if the scene's validation accepts the position (light/check_lights.cpp).
 bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
 
-/// Returns true for formats in which the angles of a spot light span its whole cones. In other
-/// formats, such as glTF, the angles reach from the axis to the edge. Assimp does not convert them.
+/// Returns true for formats that measure the angles of a spot light from edge to edge of a cone.
+/// Other formats, such as glTF, measure from the axis to the edge. Assimp does not convert the
+/// angles.
 bool has_whole_angles(const ModelFile& file) {
   constexpr absl::string_view kSuffixes[] = {".fbx", ".dae", ".3ds", ".ase", ".blend"};
   return std::any_of(std::begin(kSuffixes), std::end(kSuffixes), [&](absl::string_view suffix) {

@@ -9,10 +9,10 @@ struct aiLight;
 
 namespace bandsaw {
 
-/// Appends the light of a node to `model.lights`; `node` is the node's transform to the model's
-/// space. Area and ambient lights are omitted, with a warning. The light of a point
-/// or spot falls off with the square of the distance. If the file gives another falloff, only the
-/// intensity at distance 1 is kept, with a warning.
+/// Appends the light `from` of a node to `model.lights`. `node` is the node's transform to the
+/// model's space. Area and ambient lights are omitted, with a warning. The result of a point or
+/// spot light falls off with the square of the distance. If the file gives a different falloff,
+/// only the intensity at distance 1 is kept, with a warning.
 void add_model_light(const aiLight& from, const Transform& node, ModelFile& file, Model& model);
 
 }  // namespace bandsaw

@@ -1,4 +1,4 @@
-// Chooses how a material of a model is read: unlit, metallic-roughness, or older kinds. Adds
+// Chooses how a material of a model is read: as unlit, metallic-roughness or an older kind. Adds
 // warnings for textures that are not rendered.
 
 #include "renderlib/import/model/model_material.h"
@@ -33,7 +33,7 @@ void warn_of_unused_textures(MaterialReader& reader) {
 }
 
 // A surface with KHR_materials_unlit is shown in its base colour under any light. Bandsaw has no
-// such material; the surface becomes a diffuse one of that colour, with the material's alpha.
+// such material. So the surface becomes diffuse, with the base colour and alpha of the material.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the materials of a model; its meshes then refer to them.
+// Reads the materials of a model. The model's meshes refer to the materials.
 
 #include <optional>
 
@@ -17,12 +17,11 @@ struct Alpha;
 
 inline constexpr unsigned kNoUvSet = ~0u;
 
-/// A material of a model in the draft (the scene while it is being read), and Assimp's numbers of
-/// the uv sets that its meshes use as their first and second set. kNoUvSet: there is no second set.
+/// A material of a model that was added to the draft (the scene while it is being read).
 struct ModelMaterial {
   MaterialId id{};
-  unsigned uv_set = 0;
-  unsigned second_uv_set = kNoUvSet;
+  unsigned uv_set = 0;                ///< Assimp's number of the first uv set of its meshes
+  unsigned second_uv_set = kNoUvSet;  ///< of the second uv set; kNoUvSet: there is none
   /// The material on a mesh that encloses a volume (KHR_materials_volume).
   struct Glass {
     MaterialId id{};

@@ -25,6 +25,7 @@
 namespace bandsaw {
 namespace {
 
+/// Numbers of faces that are left out.
 struct Counts {
   std::size_t other_faces = 0;  ///< points and lines
   std::size_t not_finite = 0;   ///< triangles with a vertex that is not finite
@@ -36,8 +37,8 @@ struct Poses {
   MeshPose at_close;
 };
 
-/// Sets the positions and normals at the opening of the shutter, and those at its closing if they
-/// differ.
+/// Sets mesh.positions and mesh.normals, which belong to the opening of the shutter. If the
+/// vertices differ at the closing, also sets mesh.positions_at_close and mesh.normals_at_close.
 void add_vertices(const aiMesh& from, const Poses& poses, Mesh& mesh) {
   Vertices open = posed_vertices(from, poses.at_open);
   if (!(poses.at_close == poses.at_open)) {
@@ -82,6 +83,7 @@ absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& m
   return absl::OkStatus();
 }
 
+/// Returns the uvs of Assimp's uv set `uv_set`; an empty list if the mesh does not have the set.
 std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   if (uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !from.HasTextureCoords(uv_set)) {
     return {};
@@ -127,6 +129,7 @@ class MeshReader {
   MeshReader(const aiMesh& from, std::string title, std::vector<std::string>& warnings)
       : from_(from), title_(std::move(title)), warnings_(warnings) {}
 
+  /// Returns the mesh with the uv sets of its material, without vertex colours and repairs.
   absl::StatusOr<Mesh> read(const ModelMaterial& material, const Poses& poses) {
     Mesh mesh;
     add_vertices(from_, poses, mesh);
@@ -138,6 +141,7 @@ class MeshReader {
     return mesh;
   }
 
+  /// Repairs the mesh (repair_mesh.h), with warnings.
   void repair(Mesh& mesh) {
     drop_unused_vertices(mesh);
     if (const std::size_t repaired = repair_normals(mesh); repaired > 0) {
@@ -226,6 +230,8 @@ MeshPose pose_of(const ModelFile& file, unsigned number, const NodePlaces& place
   return pose;
 }
 
+/// Reads and repairs the mesh with Assimp's number `number`. `with_colors` says whether its vertex
+/// colours are read.
 absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMaterial& material,
                                bool with_colors, const Poses& poses) {
   const aiMesh& from = *file.scene.mMeshes[number];

@@ -40,6 +40,7 @@ Slot base_slot(const MaterialReader& reader) {
   return has_own_base(reader) ? base : either(reader, base, {aiTextureType_DIFFUSE});
 }
 
+// Reads base colour, metallic share and roughness.
 absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
   const Slot slot = base_slot(reader);
   ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
@@ -59,6 +60,7 @@ absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
+// Reads the emitted radiance. Materials of glTF emit on one side unless they are two-sided.
 absl::Status read_emission(MaterialReader& reader, Emission& to) {
   const Slot slot = either(reader, {aiTextureType_EMISSIVE}, {aiTextureType_EMISSION_COLOR});
   ASSIGN_OR_RETURN(to.radiance.texture, reader.map(slot, As::kColor));
@@ -76,6 +78,7 @@ absl::Status read_emission(MaterialReader& reader, Emission& to) {
   return absl::OkStatus();
 }
 
+// Reads the normal maps of the surface and of its clear coat.
 absl::Status read_normals(MaterialReader& reader, Relief& relief, MetallicRoughness& to) {
   const Slot slot = either(reader, {aiTextureType_NORMALS}, {aiTextureType_NORMAL_CAMERA});
   if (reader.has(slot)) {
@@ -123,6 +126,7 @@ double index_of_refraction(const MaterialReader& reader) {
   return reader.number("$mat.refracti", 1, 5).value_or(1.5);
 }
 
+// Reads the index of refraction, the clear coat and the transmission.
 absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   to.index_of_refraction = index_of_refraction(reader);
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->specular) {
@@ -138,9 +142,10 @@ absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness without its image. If the surface has no diffuse
-// texture and its specular colour is brighter than 0.5, it is taken as a metal. The metallic share
-// m is chosen so that the mixture (1 - m) 0.04 + m is as bright as the specular colour.
+// Converts KHR_materials_pbrSpecularGlossiness without the specular-glossiness image. If the
+// surface has no diffuse texture and its specular colour is brighter than 0.5, it is taken as a
+// metal. The metallic share m is chosen so that the mixture (1 - m) 0.04 + m is as bright as the
+// specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;

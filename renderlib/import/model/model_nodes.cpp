@@ -27,6 +27,7 @@ constexpr std::size_t kMaxInstances = 1'000'000;
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
+/// A camera of Assimp with the values of its lens that the file gives. `name` is set for glTF.
 struct CameraAtNode {
   const aiCamera* camera = nullptr;
   std::string name = {};                              ///< the camera's own name
@@ -82,8 +83,8 @@ bool has_usable_cameras(const ModelFile& file) {
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
-/// Returns the keys of a node's motion during the shutter interval. Returns no keys if they cannot
-/// be interpolated. This is so if a key flattens the node, or if only some of the keys mirror it.
+/// Returns the keys of a node's motion during the shutter interval. If a key flattens the node, or
+/// if only some of the keys mirror it, the keys cannot be interpolated and the result is empty.
 std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
   std::vector<double> times = motion.times_between(shutter.open, shutter.close);
   if (!motion.is_linear()) {
@@ -140,6 +141,7 @@ class Walk {
     stack_.push_back({scene.mRootNode, {}});
   }
 
+  /// Visits the nodes until there are too many instances.
   void run() {
     while (!stack_.empty() && model.instances.size() <= kMaxInstances) {
       const Entry entry = stack_.back();
@@ -169,8 +171,8 @@ class Walk {
     named_cameras_.emplace(camera.mName.C_Str(), at);
   }
 
-  /// The place of a node for its instances, and its transforms to the model's space at three times
-  /// of the shutter interval.
+  /// The place of a node for its instances, and the node's transforms to the model's space at three
+  /// times of the shutter interval.
   struct NodePlace {
     Transform in_frame;  ///< transform to `frame`; to the model's space if `frame` is kNoFrame
     FrameId frame = kNoFrame;
@@ -182,6 +184,8 @@ class Walk {
     const aiNode* node;
     NodePlace parent;
   };
+  /// Returns the place of a node whose parent has the place `parent`. Adds a frame if the node
+  /// moves.
   NodePlace place_of(const aiNode& node, const NodePlace& parent) {
     const NodeMotion* motion = motion_of(file_.animation ? &*file_.animation : nullptr, visited_);
     const Shutter& shutter = file_.draft.shutter;
@@ -204,6 +208,7 @@ class Walk {
     return place;
   }
 
+  /// Adds the instances, the camera and the lights of a node, and pushes its children.
   void visit(const aiNode& node, const NodePlace& place) {
     const bool regular =
         inverse(place.in_frame).has_value() && inverse(place.in_middle).has_value();

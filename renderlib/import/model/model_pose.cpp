@@ -1,5 +1,5 @@
 // Computes the vertices of a mesh in a pose: adds morph targets to the vertices, then transforms
-// them by the weighted mean of their bones' transforms.
+// each vertex by the weighted mean of the transforms of its bones.
 
 #include "renderlib/import/model/model_pose.h"
 
@@ -33,6 +33,7 @@ void add_target(const aiVector3D* target, const aiVector3D* base, double weight,
   }
 }
 
+/// Adds `by` times the matrix of `t` to `sum`.
 void add_scaled(const Transform& t, double by, Transform& sum) {
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {

@@ -23,8 +23,8 @@ namespace bandsaw {
 /// in the order of Assimp's tree, parents first.
 struct NodePlaces {
   std::vector<Transform> by_number;
-  std::map<std::string, std::size_t> by_name;  ///< if several share a name, the first
-  std::map<unsigned, std::size_t> of_meshes;   ///< the first node of each mesh
+  std::map<std::string, std::size_t> by_name;  ///< each name -> number of the first node with it
+  std::map<unsigned, std::size_t> of_meshes;   ///< each mesh -> number of the first node with it
 };
 /// Returns the nodes at `time`, in seconds. If `animation` is nullptr, each node has the transform
 /// that the file gives it.
@@ -33,7 +33,7 @@ NodePlaces node_places(const aiScene& scene, const Animation* animation, double 
 /// The values on which a mesh's vertices depend.
 struct MeshPose {
   std::vector<double> weights =
-      {};  ///< weights of the morph targets; empty: the weights in the file are used
+      {};  ///< weights of the morph targets; if empty, the file's weights are used
   /// Transforms of the mesh's bones to the model's space, in the order of the bones; std::nullopt:
   /// no skin.
   std::optional<std::vector<Transform>> bones = std::nullopt;

@@ -1,5 +1,5 @@
-// Finds the images that a model names: looks among the embedded ones, then for a file by several
-// spellings of its name.
+// Finds an image that a model names, among the images that are embedded in the model or among the
+// files of the scene's folder. Several spellings of a file's name are tried.
 
 #include "renderlib/import/model/model_textures.h"
 
@@ -58,6 +58,7 @@ std::string tga_of(const aiTexture& raw) {
   return file;
 }
 
+// Returns what follows the last slash.
 std::string last_part(const std::string& name) {
   const std::size_t slash = name.rfind('/');
   return slash == std::string::npos ? name : name.substr(slash + 1);

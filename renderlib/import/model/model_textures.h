@@ -20,8 +20,8 @@ class ModelTextures {
 
   /// Finds an image by its name in the model and adds it as a texture. The image is embedded, or it
   /// is a file. The name of a file may have backslashes, be percent-encoded or differ in case. If
-  /// the name leads to no file in the scene's folder, its last part is looked up in the model's
-  /// folder. Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with the reason.
+  /// the name leads to no file in the scene's folder, the last part of the name is looked up in
+  /// the model's folder. Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
   /// Returns OK if find() would find a file or an embedded image, otherwise its error.
@@ -35,12 +35,14 @@ class ModelTextures {
   absl::StatusOr<bool> is_see_through(const std::string& file) const;
 
  private:
+  /// An image, in a file or embedded in the model.
   struct Source {
     std::string key;    ///< identifies the image; for a file, its path
     std::string name;   ///< name for messages
     int embedded = -1;  ///< Assimp's number; -1 for a file
     absl::StatusOr<std::string> bytes(const aiScene& scene) const;
   };
+  /// Finds an image as find() does, but adds no texture.
   absl::StatusOr<Source> source_of(const std::string& file) const;
 
   const aiScene& scene_;

@@ -40,12 +40,12 @@ std::vector<double> take_numbers(absl::string_view& line) {
   return numbers;
 }
 
-// `keyword`: in lower case.
+// Returns true if a line with this keyword, in lower case, names a texture.
 bool is_texture(const std::string& keyword) {
   return absl::StartsWith(keyword, "map_") || keyword == "bump" || keyword == "norm";
 }
 
-// Adds the options of one texture. `line`: the rest of its line, after the keyword.
+// Adds the options of one texture of `material`. `line` is what follows the keyword.
 void read_texture(const std::string& material, absl::string_view line, MtlOptions& to) {
   UvTransform transform;
   while (absl::StartsWith(line, "-")) {

@@ -30,7 +30,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
 }
 
 /// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its
-/// triangles. The normals belong to the vertices `positions`. Returns the number of replaced
+/// triangles. `normals` belong to the vertices `positions`. Returns the number of replaced
 /// normals.
 std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                    const std::vector<std::array<float, 3>>& positions,

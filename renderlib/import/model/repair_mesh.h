@@ -1,6 +1,6 @@
 #pragma once
 
-// Repairs defects of an imported mesh, but only where this needs no guess at what was meant.
+// Repairs those defects of an imported mesh whose repair needs no guess at what was meant.
 
 #include <cstddef>
 
