@@ -47,6 +47,7 @@ Rgb3 in_srgb(const Rgb3& rgb, const std::string& space) {
   return rgb;
 }
 
+/// Returns the colour of a spectrum. For a light, the spectrum is scaled to luminance 1.
 Rgb3 of_spectrum(const spectrum::Sampled& sampled, ColorUse use) {
   return use == ColorUse::kLight ? spectrum::light_rgb_of_luminance_1(sampled)
                                  : spectrum::factor_rgb(sampled);

@@ -21,7 +21,7 @@ namespace bandsaw::pbrt {
 
 using spectrum::Rgb3;
 
-/// Name of the empty medium inside of clear glass that lies in a medium.
+/// Name of the empty medium that fills clear glass if the glass lies in a medium.
 inline constexpr char kVacuum[] = "vacuum";
 
 /// A medium as MakeNamedMedium defined it.
@@ -50,7 +50,7 @@ struct Builder {
   /// Factor of all light: exposure time x ISO / 100 of the film.
   double light_factor = 1;
   double start_time = 0;    ///< seconds, when the motion starts (TransformTimes)
-  double end_time = 1;      ///< seconds, when it ends
+  double end_time = 1;      ///< seconds, when the motion ends
   bool has_motion = false;  ///< something in the scene moves
   Extent extent;
 
@@ -79,6 +79,7 @@ struct Builder {
   scene::Group* group = nullptr;
   int helper_groups = 0;  ///< number of groups that add_helper_group() made
 
+  /// Adds a warning with the place before `what`. At most 1000 warnings are kept.
   void warn(const Place& place, absl::string_view what);
   /// Adds the warning unless the same text was a warning before.
   void warn_once(const Place& place, absl::string_view what);
@@ -111,9 +112,9 @@ absl::StatusOr<Rgb3> color(const Parameters& parameters, const std::string& name
 absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& parameter,
                                                              Builder& builder);
 
-/// Returns the bytes of a file of the scene's folder. Returns std::nullopt if it is missing, after
-/// a warning that ends with `instead`, which names the substitute. The error is PERMISSION_DENIED
-/// if the file lies outside of the folder.
+/// Returns the bytes of a file of the scene's folder. If the file is missing, returns std::nullopt
+/// after a warning. The warning ends with `instead`, which says what is used instead. The error is
+/// PERMISSION_DENIED if the file lies outside of the folder.
 absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name, const Place& place,
                                                         absl::string_view instead,
                                                         Builder& builder);
@@ -121,8 +122,8 @@ absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name,
 // Each of these functions converts a directive (textures.cpp, materials.cpp, shapes.cpp,
 // lights.cpp). They add the result to the builder, except make_surface(), which returns the result.
 // `type` is the type that the directive names ("sphere"). For a texture, `type` is "spectrum" or
-// "float", and `kind` is the class of the texture ("imagemap"). The name of the material begins
-// with `label`.
+// "float", and `kind` is the class of the texture ("imagemap"). The name of the material that
+// make_surface() makes begins with `label`.
 absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
                          Parameters parameters, const State& state, Builder& builder);
 absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,

@@ -1,6 +1,7 @@
 // Converts a pbrt scene to a Bandsaw scene file. Interpreter reads one directive after the other
-// and calls the function of the directive. These functions change the graphics state, or add a
-// material, shape, light or medium to the scene (builder.h).
+// and calls the function of the directive. Such a function changes the graphics state (what the
+// following shapes get: transformation, material, media), or adds a material, shape, light or
+// medium to the scene (builder.h).
 
 #include "renderlib/import/pbrt/convert_pbrt.h"
 
@@ -34,6 +35,7 @@ class Interpreter {
     state().surface = std::move(surface);
   }
 
+  /// Executes all directives of the scene's file and returns the converted scene.
   absl::StatusOr<ConvertedScene> run() {
     RETURN_IF_ERROR(tokens_.include(builder_.from.name, {builder_.from.name, 0}));
     while (true) {
@@ -56,6 +58,7 @@ class Interpreter {
 
   using Action = absl::Status (Interpreter::*)(const Place&);
 
+  /// Executes the directive whose name is `token`.
   absl::Status execute(const Token& token) {
     static constexpr std::pair<const char*, Action> kActions[] = {
         {"Shape", &Interpreter::shape},
@@ -388,6 +391,7 @@ class Interpreter {
     return absl::OkStatus();
   }
 
+  /// Returns an error if the directive `what` stands before WorldBegin.
   absl::Status in_world(const Place& place, absl::string_view what) const {
     return is_in_world_ ? absl::OkStatus()
                         : error_at(place, absl::StrCat(what, " must come after WorldBegin"));
@@ -425,6 +429,7 @@ class Interpreter {
     return before_world(place, "Integrator");
   }
 
+  /// Returns an error if the directive `what` stands after WorldBegin.
   absl::Status before_world(const Place& place, absl::string_view what) const {
     return !is_in_world_ ? absl::OkStatus()
                          : error_at(place, absl::StrCat(what, " must come before WorldBegin"));
@@ -442,6 +447,7 @@ class Interpreter {
 
   // The end.
 
+  /// Sets what is known only at the end: fog, media, shutter and background.
   absl::StatusOr<ConvertedScene> finish() {
     if (!is_in_world_) {
       return absl::InvalidArgumentError(

@@ -1,6 +1,7 @@
-// Holds the graphics state of a pbrt scene as a stack of states. AttributeBegin and TransformBegin
-// push a copy of the state. AttributeEnd restores it, and TransformEnd restores its
-// transformations. An imported file has a stack of its own.
+// Holds the graphics state of a pbrt scene: what the following shapes get, such as transformations,
+// material and media. AttributeBegin and TransformBegin push a copy of the state to a stack.
+// AttributeEnd restores the last copy, TransformEnd only the transformations of the last copy. An
+// imported file has a stack of its own.
 
 #include "renderlib/import/pbrt/graphics_state.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Holds the current graphics state of a pbrt scene while its directives are executed, the states
-// that AttributeBegin has saved, and the named coordinate systems.
+// Holds the graphics state of a pbrt scene while its directives are executed: what the following
+// shapes get, such as transformations, material and media. Also holds the states that
+// AttributeBegin has saved, and the named coordinate systems.
 
 #include <map>
 #include <string>
@@ -22,6 +23,7 @@ class GraphicsState {
   absl::Status set(const Place& place, const Transform& to);
   absl::Status concatenate(const Place& place, const Transform& by);
 
+  /// Stores `transforms` as the coordinate system `name`.
   void define_system(const std::string& name, const Transforms& transforms);
   /// Replaces the current transformations by those of a named coordinate system. Returns false if
   /// no system has this name.
@@ -29,16 +31,16 @@ class GraphicsState {
 
   /// Saves the state. The error is RESOURCE_EXHAUSTED if 1024 states are saved already.
   absl::Status save(const Place& place);
-  /// restore() restores the state that was saved last, restore_transforms() only its
-  /// transformations. Either removes it from the saved states. The error is INVALID_ARGUMENT if no
-  /// state is saved.
+  /// Restores the state that was saved last, and removes it from the saved states. The error is
+  /// INVALID_ARGUMENT if no state is saved.
   absl::Status restore(const Place& place);
+  /// Works as restore(), but restores only the transformations.
   absl::Status restore_transforms(const Place& place);
-  /// Begins a file of the directive Import. The states that are saved outside of it cannot be
-  /// restored inside of it.
+  /// Begins a file of the directive Import. The directives of this file cannot restore states that
+  /// were saved before.
   void begin_import();
-  /// Ends the imported file that was begun last, which MUST exist. The state is again the one that
-  /// was current when begin_import() was called.
+  /// Ends the imported file that was begun last, which MUST exist. Restores the state that was
+  /// current when begin_import() was called.
   void end_import();
   /// Returns the number of states that are saved. Inside of an imported file, counts only the
   /// states that this file has saved.

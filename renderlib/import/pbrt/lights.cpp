@@ -35,9 +35,9 @@ struct LightSource {
     }
     return rgb;
   }
-  /// Returns the factor by which the light must be scaled so that its power or illuminance is the
-  /// one that the scene states in the parameter `wanted` ("power" or "illuminance"); 1 if the scene
-  /// states none. `own`: power or illuminance that the light would have with luminance 1.
+  /// The parameter `wanted` ("power" or "illuminance") states the power or illuminance of the
+  /// light. Returns the factor that scales the light to this value; 1 if the parameter is absent.
+  /// `own` is the power or illuminance that the light has if its luminance is 1.
   absl::StatusOr<double> factor_for(const std::string& wanted, double own) const {
     ASSIGN_OR_RETURN(const double value, parameters.number(wanted, -1));
     if (!(value > 0)) {
@@ -97,9 +97,9 @@ absl::Status distant(const LightSource& from) {
   return absl::OkStatus();
 }
 
-/// Adds a point light. Its intensity is multiplied by `mean_of_image`, the mean of a goniometric
-/// light's image (1 for other lights). `own_power`: the power of the light if its parameter I
-/// has luminance 1.
+/// Adds a point light. The intensity is multiplied by `mean_of_image`, the mean of the image of a
+/// goniometric light (1 for a point light). `own_power` is the power of the light if the parameter
+/// I has luminance 1.
 absl::Status point_light(const LightSource& from, double mean_of_image, double own_power) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own_power));
@@ -140,6 +140,7 @@ absl::Status spot(const LightSource& from) {
   return absl::OkStatus();
 }
 
+/// Returns the mean colour of the pixels.
 Rgb3 mean_of(const Image& image) {
   Rgb3 sum = {};
   for (const Rgb& pixel : image.pixels) {
@@ -205,8 +206,8 @@ absl::Status projection(const LightSource& from) {
   const Transform& to_world = from.to_world();
   set_vec3(to_world.point({0, 0, 0}), light->mutable_position());
   set_vec3(to_world.point({0, 0, 1}), light->mutable_look_at());
-  // The image's top is towards +y of the light, its right towards +x. Without a mirror its right
-  // would be cross(z, y) = -x.
+  // The top of the image is towards +y of the light, and the right side towards +x. Without a
+  // mirror the right side would be towards cross(z, y) = -x.
   set_vec3(to_world.direction({0, 1, 0}), light->mutable_up());
   light->set_mirrored(determinant(to_world) > 0);
   light->set_vertical_fov(2 * atan2(half_height, 1) * 180 / kPi);

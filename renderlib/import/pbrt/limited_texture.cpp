@@ -1,5 +1,5 @@
-// Limits the values of textures to 1, because pbrt clamps a reflectance to 1 where it uses the
-// reflectance. If an image exceeds 1, by itself or by its factor, the converter makes an image with
+// Limits the values of textures to 1, because pbrt clamps reflectances to 1 when it renders. If an
+// image exceeds 1, by itself or by its factor, the converter makes an image with
 // the limited values and adds it to the scene as a made file.
 
 #include <algorithm>
@@ -15,16 +15,17 @@ namespace bandsaw::pbrt {
 namespace {
 
 /// Maximum number of textures within one texture that are limited one by one. Further textures are
-/// scaled. The maximum bounds the time for a hostile scene, in which one texture can contain
-/// another very often.
+/// scaled. The maximum bounds the time for a hostile scene, in which a texture can contain the
+/// same texture very often.
 constexpr int kMaxSteps = 100;
 
-/// Return the largest channel.
+/// most_of() returns the largest channel.
 double most_of(const Rgb3& rgb) { return *std::max_element(rgb.begin(), rgb.end()); }
 double most_of(const scene::Color& color) {
   return *std::max_element(color.rgb().begin(), color.rgb().end());
 }
 
+/// Returns the texture `a` times the colour `b`.
 scene::Texture product(scene::Texture a, const Rgb3& b) {
   scene::Texture out;
   *out.mutable_product()->mutable_a() = std::move(a);

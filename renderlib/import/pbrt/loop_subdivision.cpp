@@ -2,8 +2,8 @@
 // triangle into four. An old vertex moves to a weighted mean of itself and its neighbours. A new
 // vertex is a weighted mean of the ends of an edge and of the two vertices opposite to the edge.
 // After the last level, the vertices move to their limits, at which the normal is the cross product
-// of two tangents. The weights are those of Loop 1987. On boundaries and for limits, they are those
-// of Hoppe et al. 1994, "Piecewise Smooth Surface Reconstruction", appendix A.
+// of two tangents. The weights are from Loop 1987. The weights on boundaries and for limits are
+// from Hoppe et al. 1994, "Piecewise Smooth Surface Reconstruction", appendix A.
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +28,7 @@ struct Edge {
   int triangles = 0;  ///< number of triangles with this edge
 };
 
+/// Which vertices of a mesh are neighbours, and which are on a boundary.
 struct Topology {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
   /// The neighbours of each vertex, in order around it. The ring of a vertex on the boundary is
@@ -36,6 +37,7 @@ struct Topology {
   std::vector<bool> is_boundary;
 };
 
+/// Returns the key of an edge in Topology::edges.
 std::pair<std::uint32_t, std::uint32_t> key_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
@@ -156,8 +158,8 @@ void subdivide(std::vector<Vec3>& points, std::vector<Triangle>& triangles,
   triangles = std::move(split);
 }
 
-/// Returns the normal of the limit surface at vertex `v`, not normalized: the cross product of its
-/// two tangents.
+/// Returns the normal of the limit surface at vertex `v`, not normalized: the cross product of two
+/// tangents. `points` are the limits of the vertices.
 Vec3 limit_normal(const std::vector<Vec3>& points, const Topology& topology, std::size_t v) {
   const auto& ring = topology.rings[v];
   Vec3 s;

@@ -1,6 +1,6 @@
-// Gives materials their names in our scene. In pbrt, emission and opacity belong to the shape; in
-// Bandsaw they belong to the material. So each combination of a surface, an emission and an opacity
-// becomes one material.
+// Gives materials their names in our scene, the Bandsaw scene that is made. In pbrt, emission and
+// opacity belong to the shape; in Bandsaw they belong to the material. So each combination of a
+// surface, an emission and an opacity becomes one material.
 
 #include <algorithm>
 
@@ -41,6 +41,7 @@ void add_emission(const ShapeLook& look, const Surface& surface, const Place& pl
   to.set_emission_one_sided(!look.emits_on_both_sides);
 }
 
+/// Sets the opacity of a shape. Warns if a material of this kind cannot have an opacity.
 void add_opacity(const scene::Texture& opacity, const Place& place, scene::Material& to,
                  Builder& builder) {
   if (to.has_mix() || to.has_emissive()) {

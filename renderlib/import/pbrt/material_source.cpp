@@ -12,7 +12,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// pbrt treats a surface with a smaller alpha as smooth.
+/// The alpha below which pbrt treats a surface as smooth.
 constexpr double kSmooth = 1e-3;
 
 }  // namespace
@@ -37,8 +37,9 @@ absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::
     out.alpha[k] = std::clamp(remap ? std::sqrt(std::max(*value, 0.0)) : *value, 0.0, 1.0);
   }
   if (out.texture && remap) {
-    from.builder.warn_once(from.place(),
-                           "textures of roughness are taken as alpha, without remaproughness");
+    from.builder.warn_once(
+        from.place(),
+        "textures of roughness are taken as alpha: \"remaproughness\" has no effect on them");
   }
   return out;
 }
@@ -74,7 +75,7 @@ absl::StatusOr<double> read_index(const MaterialSource& from, const std::string&
   }
   ASSIGN_OR_RETURN(const auto sampled, spectrum_of(*found, from.builder));
   from.builder.warn_once(found->place,
-                         "the index of refraction is that at 588 nm: there is no dispersion");
+                         "the index of refraction at 588 nm is used: there is no dispersion");
   return std::clamp(sampled->at(spectrum::kLineD), 1.0, 5.0);
 }
 

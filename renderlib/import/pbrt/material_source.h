@@ -18,7 +18,8 @@ struct MaterialSource {
   Builder& builder;
 
   const Place& place() const { return parameters.place; }
-  /// Returns the reflectance of a parameter, at most 1; the constant `otherwise` if it is absent.
+  /// Returns the reflectance of the parameter `name`, at most 1. If the parameter is absent,
+  /// returns the constant `otherwise`.
   absl::StatusOr<scene::Texture> reflectance(const std::string& name, double otherwise) const {
     ASSIGN_OR_RETURN(scene::Texture texture,
                      color_texture(parameters, name, ColorUse::kReflectance,
@@ -31,6 +32,7 @@ struct MaterialSource {
 struct Roughness {
   double alpha[2] = {0, 0};
   std::optional<scene::Texture> texture;  ///< texture of alpha, if alpha varies
+  /// Returns true if the surface is perfectly smooth: alpha is constant and less than 0.001.
   bool is_smooth() const;
   /// Returns the mean alpha of both directions; 1 if alpha is a texture.
   double mean() const { return texture ? 1 : (alpha[0] + alpha[1]) / 2; }
@@ -41,7 +43,7 @@ struct Roughness {
 absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::string& prefix,
                                          double otherwise);
 
-/// Sets the microfacets of a surface that is not smooth.
+/// Writes the roughness of a surface that is not smooth to `to`.
 void set_microfacets(const Roughness& roughness, scene::Microfacets* to);
 
 /// Returns the index of refraction that the parameter `name` gives, clamped to [1, 5]. It is a

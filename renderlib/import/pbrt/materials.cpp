@@ -12,8 +12,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Writes `texture` to a field of `message`. If the texture is a constant colour, `color` returns
-/// this field. Otherwise `other` returns it.
+/// Writes a constant colour to the field color(message), and any other texture to the field
+/// other(message).
 void set_color_or_texture(scene::Texture texture, scene::Color* (*color)(void*),
                           scene::Texture* (*other)(void*), void* message) {
   if (texture.has_color()) {
@@ -23,6 +23,7 @@ void set_color_or_texture(scene::Texture texture, scene::Color* (*color)(void*),
   }
 }
 
+/// Writes `texture` to the field `color` or `texture` of `to`.
 template <class Message>
 void set_reflectance(scene::Texture texture, Message& to) {
   set_color_or_texture(
@@ -47,7 +48,8 @@ absl::Status coated_diffuse(const MaterialSource& from, Surface& to) {
     if (roughness.alpha[0] != roughness.alpha[1]) {
       plastic.mutable_surface()->set_alpha(roughness.mean());
       plastic.mutable_surface()->clear_alpha_v();
-      from.builder.warn(from.place(), "the coat's roughness is the mean of that along u and v");
+      from.builder.warn(from.place(),
+                        "the coat's roughness is the mean of the roughness along u and v");
     }
   }
   ASSIGN_OR_RETURN(const double index, read_index(from, "eta", 1.5));
@@ -179,6 +181,8 @@ void use_all(const MaterialSource& from) {
   }
 }
 
+/// Converts a material of the kind `type`. A kind without a counterpart becomes a diffuse or coated
+/// diffuse surface, with a warning.
 absl::Status read_kind(const MaterialSource& from, const std::string& type, Surface& to) {
   using Reader = absl::Status (*)(const MaterialSource&, Surface&);
   constexpr std::pair<const char*, Reader> kReaders[] = {

@@ -1,5 +1,5 @@
-// Converts pbrt's media: homogeneous ones, and grids (uniformgrid), which become volume files.
-// Other kinds are left out with a warning.
+// Converts pbrt's media of the kinds homogeneous and uniformgrid. A grid becomes a volume file.
+// Media of other kinds are left out with a warning.
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@ struct MediumParts {
   State state;
   Builder& builder;
   const Parameters& parameters() const { return medium.parameters; }
+  /// Returns the colour of the parameter `name`; `otherwise` if the parameter is absent.
   absl::StatusOr<Rgb3> read(const std::string& name, const Rgb3& otherwise) const {
     return color(parameters(), name, ColorUse::kUnbounded, otherwise, state, builder);
   }
@@ -112,6 +113,7 @@ absl::Status read_grid(const MediumParts& from, const std::string& name, const T
   return absl::OkStatus();
 }
 
+/// Reads a medium whose density is a grid.
 absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shape,
                                scene::Medium& to) {
   RETURN_IF_ERROR(read_common(from, {1, 1, 1}, {1, 1, 1}, to));

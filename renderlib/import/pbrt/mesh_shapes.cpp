@@ -24,7 +24,7 @@ constexpr double kMaxCoordinate = 1e30;
 constexpr int kAround = 128;  // segments of a whole turn of a quadric
 constexpr std::uint64_t kMaxPlyBytes = std::uint64_t{4} << 30;
 
-/// Reads a list of float tuples.
+/// Reads the numbers of the parameter `name`, which has one of `types`, in groups of n.
 template <std::size_t n>
 absl::StatusOr<std::vector<std::array<float, n>>> tuples(const Parameters& in,
                                                          const std::string& name,
@@ -50,9 +50,9 @@ absl::StatusOr<std::vector<std::uint32_t>> indices(const Parameters& in, std::si
   out.reserve(numbers.size());
   for (const double number : numbers) {
     if (!(number >= 0 && number < static_cast<double>(vertices)) || number != std::floor(number)) {
-      return error_at(
-          in.find("indices")->place,
-          absl::StrCat("the index ", number, " is that of no point; there are ", vertices));
+      return error_at(in.find("indices")->place,
+                      absl::StrCat("the index ", number,
+                                   " is that of no point; the number of points is ", vertices));
     }
     out.push_back(static_cast<std::uint32_t>(number));
   }
@@ -67,6 +67,7 @@ absl::StatusOr<std::vector<std::uint32_t>> indices(const Parameters& in, std::si
   return out;
 }
 
+/// Reads the points, normals and uvs of a mesh.
 absl::StatusOr<PlyMesh> read_vertices(const Parameters& in) {
   PlyMesh mesh;
   ASSIGN_OR_RETURN(mesh.positions, tuples<3>(in, "P", {"point3"}));
@@ -156,6 +157,7 @@ void add_grid(int columns, int rows, const F& f, PlyMesh& mesh) {
   }
 }
 
+/// Appends a vertex at `p` with the normal `n`, if there is one, and the uv coordinates u and v.
 void add_vertex(const Vec3& p, const std::optional<Vec3>& n, double u, double v, PlyMesh& mesh) {
   mesh.positions.push_back(float3(p));
   if (n) {
@@ -210,6 +212,7 @@ struct Sweep {
   int columns = kAround;  ///< number of segments
 };
 
+/// Reads the angle phimax of a quadric.
 absl::StatusOr<Sweep> read_sweep(const Parameters& in) {
   ASSIGN_OR_RETURN(const double degrees, in.number("phimax", 360));
   Sweep sweep;
@@ -218,6 +221,7 @@ absl::StatusOr<Sweep> read_sweep(const Parameters& in) {
   return sweep;
 }
 
+/// Returns the parameter `name`, which must be above 0; `otherwise` if it is absent.
 absl::StatusOr<double> positive(const Parameters& in, const std::string& name, double otherwise) {
   ASSIGN_OR_RETURN(const double value, in.number(name, otherwise));
   if (!(value > 0 && value < kMaxCoordinate)) {
@@ -290,6 +294,8 @@ absl::StatusOr<PlyMesh> disk_mesh(const Parameters& in) {
   return mesh;
 }
 
+/// Reads a PLY file, which may be compressed. If the file is missing, warns and returns
+/// std::nullopt.
 absl::StatusOr<std::optional<PlyMesh>> ply_mesh(const Parameters& in, Builder& builder) {
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
   ASSIGN_OR_RETURN(auto bytes, read_or_warn(file, in.place, "the shape is left out", builder));

@@ -9,15 +9,15 @@
 namespace bandsaw::pbrt {
 
 /// Returns the mesh of a shape of kind trianglemesh, loopsubdiv, bilinearmesh, plymesh, or a
-/// quadric (sphere, disk, cylinder). Its triangles face to the side of pbrt's normals before
-/// ReverseOrientation. Returns std::nullopt, after a warning, if the file is missing or no triangle
-/// is left. The error is INVALID_ARGUMENT if the parameters are wrong.
+/// quadric (sphere, disk, cylinder). The triangles face to the side of pbrt's normals.
+/// ReverseOrientation is not applied. Returns std::nullopt, after a warning, if the file is missing
+/// or no triangle is left. The error is INVALID_ARGUMENT if the parameters are wrong.
 absl::StatusOr<std::optional<PlyMesh>> mesh_of(const std::string& type,
                                                const Parameters& parameters, Builder& builder);
 
 /// Returns Loop's subdivision of a closed or open manifold mesh after `levels` levels, in [0, 8].
-/// Its vertices lie on the limit surface, to which further levels would converge, and have the
-/// normals of this surface (Loop 1987; Hoppe et al. 1994, appendix A). The error is
+/// The vertices lie on the limit surface, to which further levels would converge, and have the
+/// normals of the limit surface (Loop 1987; Hoppe et al. 1994, appendix A). The error is
 /// INVALID_ARGUMENT for a mesh that is no manifold, and RESOURCE_EXHAUSTED for one that becomes too
 /// large.
 absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,

@@ -1,5 +1,5 @@
-// Converts pbrt's metals. The spectra of eta and k become RGB so that the reflectance at normal
-// incidence is that of the spectra.
+// Converts pbrt's metals. The spectra of eta and k become RGB values that keep the colour of the
+// reflectance at normal incidence.
 
 #include "renderlib/import/pbrt/metals.h"
 
@@ -40,7 +40,8 @@ absl::StatusOr<spectrum::Metal> read_metal(const MaterialSource& from, const std
   return metal;
 }
 
-/// Returns the reflectance of a metal at normal incidence in a medium of index `outside`.
+/// Returns the reflectance of a metal at normal incidence in a medium with the index of refraction
+/// `outside`.
 Rgb3 reflectance_of(const spectrum::Metal& metal, double outside) {
   Rgb3 out = {};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -124,7 +125,7 @@ absl::Status coated_conductor(const MaterialSource& from, Surface& to) {
   gltf.set_clearcoat_roughness(gltf_roughness(from, coat, "coat"));
   from.builder.warn_once(from.place(),
                          "coatedconductor is shown as a metal with a clear coat of index 1.5, "
-                         "without light that is reflected between the two");
+                         "without light that is reflected between coat and metal");
   from.parameters.ignore(
       {"thickness", "interface.thickness", "g", "albedo", "maxdepth", "nsamples"});
   return absl::OkStatus();
