@@ -1,5 +1,6 @@
-// Places models and instances of a pbrt scene. A motion becomes two keys. If the moving object is
-// sheared, it is put into a group, and an instance of this group moves by the keys.
+// Places models and instances of a pbrt scene. A motion becomes two keys: a pose (scale, rotation
+// and translation) at its start, and a pose at its end. If the moving object is sheared, it is put
+// into a group, and an instance of this group moves by the keys.
 
 #include "renderlib/import/pbrt/motion.h"
 
@@ -71,6 +72,7 @@ void add(scene::Instance placed, Builder& builder) {
   *instances(builder).Add() = std::move(placed);
 }
 
+/// Gives the object `to` the pose `first` at the start of the motion and `second` at its end.
 template <class Placed>
 void set_keys(const Pose& first, const Pose& second, const Builder& builder, Placed& to) {
   add_key(builder.start_time, first, *to.add_key());
@@ -126,7 +128,8 @@ void add_moving(const Place& place, const Transforms& transforms, Placed placed,
   } else if (same_side && has_times && add_sheared(transforms, placed, builder)) {
     return;
   } else {
-    builder.warn(place, "the shape stands still: its motion shears or mirrors it");
+    builder.warn(place,
+                 "the shape stands still: its motion shears or mirrors it, or has no duration");
     set_matrix(transforms[0], placed.mutable_matrix());
   }
   add(std::move(placed), builder);

@@ -15,12 +15,12 @@ struct Pose {
   Vec3 translate;
 };
 
-/// Returns the pose whose transformation is `t`. Returns std::nullopt if `t` shears or scales an
-/// axis to 0.
+/// Returns the pose whose transformation is `t`. Returns std::nullopt if `t` has a shear, or if it
+/// scales an axis to 0.
 std::optional<Pose> pose_of(const Transform& t);
 
-/// Adds an empty group to our scene and sets `name` to its name. It comes before the group that
-/// ObjectBegin has opened, if there is one, because instances refer only to earlier groups.
+/// Adds an empty group to our scene and sets `name` to its name. If ObjectBegin has opened a group,
+/// the new group comes before the open group, because instances refer only to earlier groups.
 scene::Group& add_helper_group(Builder& builder, std::string& name);
 
 /// Adds a model or an instance to the open group, or to the scene if no group is open. It is placed

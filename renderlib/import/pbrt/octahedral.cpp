@@ -1,5 +1,6 @@
-// Converts the environment of a pbrt scene: looks it up in any direction, in its octahedral or
-// latitude-longitude form, and resamples it.
+// Converts the environment image of a pbrt scene, in which the directions have octahedral
+// coordinates or longitude and latitude. The image is looked up in the direction of each pixel of
+// our environment map.
 
 #include "renderlib/import/pbrt/octahedral.h"
 

@@ -1,6 +1,6 @@
 // pbrt bounds media by single surfaces, which need not be closed. In Bandsaw a medium with open
-// surfaces fills the box around the scene. Media are ordered so that the medium of a closed shape
-// replaces such a medium where the two overlap.
+// surfaces fills the box around the scene. Media are ordered so that inside a closed shape, the
+// medium of the shape replaces the medium that fills the box.
 
 #include "renderlib/import/pbrt/open_media.h"
 

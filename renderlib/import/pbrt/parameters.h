@@ -54,7 +54,7 @@ class Parameters {
                                               std::size_t group = 1) const;
   /// Returns the strings of the parameter `name`; an empty list if it is absent.
   absl::StatusOr<std::vector<std::string>> texts(const std::string& name) const;
-  /// Marks these parameters as used. They change nothing in Bandsaw's image.
+  /// Marks the parameters with these names as used, because they change nothing in Bandsaw's image.
   void ignore(std::initializer_list<const char*> names) const;
 };
 

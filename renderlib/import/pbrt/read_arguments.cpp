@@ -50,7 +50,8 @@ absl::StatusOr<std::vector<double>> read_numbers(Tokens& tokens, const Place& pl
 absl::StatusOr<Transform> read_matrix(Tokens& tokens, const Place& place) {
   ASSIGN_OR_RETURN(const std::vector<double> m, read_numbers(tokens, place, 16));
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] == 0) {
-    return error_at(place, "the last row of the matrix must be 0 0 0 1: it must be affine");
+    return error_at(place,
+                    "the last row of the matrix must be 0 0 0 1, so that the matrix is affine");
   }
   Transform out;
   for (std::size_t row = 0; row < 3; ++row) {
@@ -86,7 +87,8 @@ absl::StatusOr<Transform> read_look_at(Tokens& tokens, const Place& place) {
   const Vec3 ahead = Vec3{n[3], n[4], n[5]} - eye;
   const Vec3 up{n[6], n[7], n[8]};
   if (!(length(ahead) > 0) || !(length(cross(up, ahead)) > 1e-9 * length(up) * length(ahead))) {
-    return error_at(place, "LookAt needs a direction, and an up that is not parallel to it");
+    return error_at(
+        place, "LookAt needs a direction, and an up vector that is not parallel to the direction");
   }
   const Vec3 forward = normalize(ahead);
   const Vec3 right = normalize(cross(normalize(up), forward));

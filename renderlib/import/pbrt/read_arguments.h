@@ -1,7 +1,8 @@
 #pragma once
 
 // Reads arguments of directives that are not parameters: names, numbers and transformations. Errors
-// are INVALID_ARGUMENT and name `place`, the place of the directive.
+// are INVALID_ARGUMENT and name a file and a line. `place` is the place of the directive. The error
+// for a number that is broken or not finite names the place of the number instead.
 
 #include <string>
 #include <vector>
@@ -22,7 +23,9 @@ absl::StatusOr<std::vector<double>> read_numbers(Tokens& tokens, const Place& pl
 
 /// Reads a matrix of 16 numbers, column by column.
 absl::StatusOr<Transform> read_matrix(Tokens& tokens, const Place& place);
+/// Reads three numbers: the translation along x, y and z.
 absl::StatusOr<Transform> read_translation(Tokens& tokens, const Place& place);
+/// Reads three numbers: the factors along x, y and z.
 absl::StatusOr<Transform> read_scaling(Tokens& tokens, const Place& place);
 /// Reads an angle in degrees and an axis.
 absl::StatusOr<Transform> read_rotation(Tokens& tokens, const Place& place);

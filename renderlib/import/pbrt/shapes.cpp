@@ -75,7 +75,8 @@ absl::StatusOr<std::string> interior_of(const Shape& shape, const Sides& sides,
   return medium_name(sides.inside, shape.place(), to_shape, shape.builder);
 }
 
-/// Adds a sphere or disk that is written in the shape's own space.
+/// Adds the sphere or disk `local`, which is written in the shape's own space, to a group of its
+/// own. An instance of this group is placed by the shape's transformations.
 void add_local(const Shape& shape, const scene::Shape& local) {
   std::string name;
   *add_helper_group(shape.builder, name).add_shape() = local;
@@ -84,6 +85,7 @@ void add_local(const Shape& shape, const scene::Shape& local) {
   add_placed(shape.place(), shape.state.transforms, std::move(instance), shape.builder);
 }
 
+/// Adds the sphere or disk `world`, which is written in world space.
 void add_world(const Shape& shape, scene::Shape world) {
   Builder& builder = shape.builder;
   *(builder.group != nullptr ? builder.group->add_shape() : builder.out.add_shape()) =
@@ -144,6 +146,8 @@ absl::Status add_sphere(const Shape& shape, double radius, const Sides& sides) {
   return absl::OkStatus();
 }
 
+/// Adds a whole disk: in world space if it does not move and its transformation keeps angles,
+/// otherwise as an instance of a group.
 void add_disk(const Shape& shape, double radius, double height) {
   extend(shape, {-radius, -radius, height}, {radius, radius, height});
   const Transform& to_world = shape.state.transforms[0];
@@ -215,7 +219,8 @@ double area_of(const PlyMesh& mesh, const Transform& to_world) {
   return area;
 }
 
-/// Reads the AreaLightSource. `area` is the area of the shape in world space.
+/// Reads the AreaLightSource, and sets the emission of `shape.look`. `area` is the area of the
+/// shape in world space.
 absl::Status read_emission(Shape& shape, double area) {
   Builder& builder = shape.builder;
   const Parameters& in = shape.state.area_light->parameters;
@@ -258,8 +263,8 @@ bool is_plain_file(const Shape& shape, const std::string& file, const Sides& sid
          shape.state.area_light == nullptr && !shape.state.surface->transmits && !sides.differ();
 }
 
-/// Adds the shape as a mesh: as the scene's PLY file if this can be used unchanged, otherwise as a
-/// made file.
+/// Adds the shape as a mesh: as the scene's PLY file if that file can be used unchanged, otherwise
+/// as a made file.
 absl::Status add_mesh(Shape& shape, Sides sides) {
   ASSIGN_OR_RETURN(const std::string file, shape.parameters.text("filename", ""));
   if (shape.type == "plymesh") {

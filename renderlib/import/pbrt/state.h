@@ -22,7 +22,7 @@ struct Surface {
   scene::Material material;  ///< without a name
   std::string label;         ///< the name in our scene begins with it: "Floor"
   bool is_null = false;      ///< "interface": the surface is invisible
-  bool transmits = false;    ///< light passes it, so media on its sides matter
+  bool transmits = false;    ///< light passes the surface, so the media on its sides matter
   bool is_black = false;     ///< reflects nothing; if it emits, it becomes an Emissive material
 };
 
@@ -40,7 +40,8 @@ struct State {
   std::string inside;   ///< medium; empty: none
   std::string outside;  ///< medium; empty: none
   std::string color_space = "srgb";
-  /// Parameters that Attribute set, keyed by target: shape, light, material, medium, texture.
+  /// Default parameters that Attribute directives have given. Each has a target, the kind of
+  /// directive to which it applies: shape, light, material, medium or texture.
   std::shared_ptr<const std::vector<std::pair<std::string, Parameter>>> defaults;
 };
 

@@ -52,6 +52,8 @@ struct Mapping {
   double offset[2] = {0, 0};
 };
 
+/// Reads the mapping of a texture. A mapping of another kind than "uv" becomes "uv", with a
+/// warning.
 absl::StatusOr<Mapping> read_mapping(const TextureSource& from) {
   const Parameters& in = from.parameters;
   Mapping mapping;
@@ -119,7 +121,8 @@ std::string file_of_numbers(const std::string& file, const std::string& bytes, B
                           std::string(reinterpret_cast<const char*>(png->data()), png->size()));
 }
 
-/// Remembers the largest value of an image of floats. For other formats, largest_value() returns 1.
+/// Remembers the largest value of an image of floats (EXR or HDR). If such an image cannot be
+/// decoded, 1 is remembered. Images of other formats have no values above 1.
 void note_largest_value(const std::string& file, const std::string& bytes, Builder& builder) {
   if (!absl::EndsWithIgnoreCase(file, ".exr") && !absl::EndsWithIgnoreCase(file, ".hdr")) {
     return;
@@ -129,6 +132,7 @@ void note_largest_value(const std::string& file, const std::string& bytes, Build
   builder.largest_of_image[file] = image.ok() ? max_value(*image) : 1;
 }
 
+/// Converts an image file. `scale` becomes a product, and `invert` a ramp from 1 to 0.
 absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));

@@ -1,5 +1,6 @@
 // Splits the files of a pbrt scene into words. Open files form a stack: next() returns the words of
-// the innermost file. At the end of this file, it continues with the file around it.
+// the file that was included last. After the last word of this file, next() continues with the file
+// that includes it.
 
 #include "renderlib/import/pbrt/tokens.h"
 
@@ -16,6 +17,7 @@ namespace {
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 bool ends_word(char c) { return is_space(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
 
+/// Returns the error `status` with the place at the beginning of its message.
 absl::Status at_place(const Place& place, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(text_of(place), ": ", status.message()));
 }

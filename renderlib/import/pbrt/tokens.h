@@ -42,7 +42,7 @@ class Tokens {
   /// string without end.
   absl::StatusOr<std::optional<Token>> next();
   /// Returns the number of open files: the file of the token that next() returned last, and the
-  /// files that include it, directly or not. Returns 0 after the last token.
+  /// files that include it, directly or not. Returns 0 after next() has returned std::nullopt.
   std::size_t depth() const { return open_.size(); }
   /// Makes next() return this token again.
   void put_back(Token token) { back_ = std::move(token); }

@@ -22,7 +22,8 @@ struct Film {
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1, shares of the whole, y from the top
 };
 
-/// Reads the film, and sets the factor of all light by the exposure time (seconds) and ISO.
+/// Reads the film. Also sets Builder::light_factor, by which all light is multiplied: the exposure
+/// time in seconds times ISO / 100.
 absl::StatusOr<Film> read_film(const ViewSource& view, double exposure_time, Builder& builder) {
   Film film;
   Parameters none;
@@ -190,7 +191,7 @@ absl::StatusOr<double> set_place(const ViewSource& view, Builder& builder) {
     return first.unit;
   }
   if (first.is_mirrored != second.is_mirrored || !(builder.start_time < builder.end_time)) {
-    builder.warn(written, "the camera does not move: its motion mirrors it");
+    builder.warn(written, "the camera does not move: its motion mirrors it or has no duration");
     return first.unit;
   }
   builder.has_motion = true;

@@ -18,8 +18,8 @@ struct ViewSource {
   Place medium_place;
 };
 
-/// Sets the camera with its shutter times, the image and the integrator of the scene. Also sets
-/// Builder::light_factor.
+/// Sets the camera (with its shutter times), the image and the integrator of the scene. Also sets
+/// Builder::light_factor, by which all light is multiplied.
 absl::Status set_view(const ViewSource& view, Builder& builder);
 
 }  // namespace bandsaw::pbrt
