@@ -28,9 +28,10 @@ class Field {
   bool has(const std::string& name) const;
 
   /// Returns INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: <what>", with the
-  /// position of the field or, if it is absent, of its message.
+  /// position of the field or, if it is absent, of its message. `index` is -1 if the field is not
+  /// repeated, or if the error is about the whole list.
   absl::Status error(const std::string& name, absl::string_view what, int index = -1) const;
-  /// Returns the same error for this message itself.
+  /// Returns INVALID_ARGUMENT with the position and the path of this message itself.
   absl::Status error(absl::string_view what) const;
 
   /// Returns the path of the field `name` in the file: "shape[4].sphere.radius".

@@ -1,7 +1,8 @@
 #pragma once
 
 // Reads fields that several kinds of materials in a scene file have. In each function `in` is the
-// message of the material's kind, and `from` is the value of the field.
+// place of the message of the material's kind, such as `metal`, and `from` is the value that is
+// read.
 
 #include <optional>
 #include <string>
@@ -67,7 +68,8 @@ inline absl::StatusOr<TextureId> read_reflectance(const Field& in, const Reflect
   return draft.textures.constant(gray(from.otherwise));
 }
 
-/// Returns the reflectance of a message with the fields `texture` and `color`.
+/// Returns the reflectance of `from`, a message with the fields `texture` and `color`. If both
+/// fields are absent, the reflectance is `otherwise`.
 template <class From>
 absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, float otherwise,
                                            SceneDraft& draft) {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMaxCoordinate = 1e30;
 
+/// Returns INVALID_ARGUMENT for the field `name` unless the list has three numbers.
 absl::Status check_three(const Field& in, const std::string& name, const Numbers& list) {
   if (list.empty()) {
     return in.error(name, "is required: a list of three numbers");

@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-// Returns ":LINE:COLUMN" of a JSON error; "" if it is unknown. For broken JSON, protobuf reports
-// the cause, up to 40 characters of the text (`excerpt`), and a line with a caret below the
+// Returns ":LINE:COLUMN" of a JSON error; "" if the position is unknown. For broken JSON, protobuf
+// reports the cause, up to 40 characters of the text (`excerpt`), and a line with a caret below the
 // position. `caret` is the number of characters before the caret. If the excerpt occurs once in the
 // file, its position determines line and column.
 std::string place_of(absl::string_view text, absl::string_view excerpt, std::size_t caret) {

@@ -19,9 +19,9 @@ struct ParsedScene {
   std::unique_ptr<google::protobuf::TextFormat::ParseInfoTree> locations;
 };
 
-/// Parses a scene in protobuf's text format. `file` is the name in errors. Returns INVALID_ARGUMENT
-/// for the first error: "cornell.textproto:12:3: <cause>". If a field is unknown, the message also
-/// names the known fields.
+/// Parses a scene in protobuf's text format. `file` is the file's name in errors. Returns
+/// INVALID_ARGUMENT for the first error: "cornell.textproto:12:3: <cause>". If a field is unknown,
+/// the message also names the known fields.
 absl::StatusOr<ParsedScene> parse_textproto(const std::string& text, const std::string& file);
 /// Parses a scene in JSON. Returns INVALID_ARGUMENT with the field's path, or with line and column
 /// if the JSON itself is broken.

@@ -19,9 +19,11 @@
 namespace bandsaw {
 namespace {
 
-// Returns the text of the parser's error. If a field is unknown, the text names the known fields.
+// Returns the text of the error that the parser describes by `message`. If a field is unknown, the
+// text names the known fields. The package name "bandsaw.scene." is left out.
 std::string explain(const std::string& message) {
   absl::string_view rest = message;
+  // Removes the text before the next quotation mark from `rest`, and returns the removed text.
   const auto until_quote = [&rest] {
     const std::string part(rest.substr(0, rest.find('"')));
     rest.remove_prefix(std::min(rest.size(), part.size()));

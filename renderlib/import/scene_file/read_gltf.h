@@ -7,9 +7,9 @@
 
 namespace bandsaw {
 
-/// Reads the material of kind `gltf` of a scene file, glTF's metallic-roughness material, with its
-/// alpha, emission and normal map. `in` is its message. Returns INVALID_ARGUMENT with the field's
-/// name.
+/// Reads a material of kind `gltf` of a scene file: glTF's metallic-roughness material with alpha,
+/// emission and normal map. `in` is the place of the message `from`. Returns INVALID_ARGUMENT, with
+/// the name of the field, if a field is invalid.
 absl::StatusOr<Material> read_gltf(const Field& in, const scene::Gltf& from, SceneDraft& draft);
 
 }  // namespace bandsaw

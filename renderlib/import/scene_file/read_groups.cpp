@@ -148,6 +148,8 @@ class InGroup {
   Contents* placed_;
 };
 
+/// Reads a group. While its shapes, models and instances are read, they are added to the group and
+/// not to the scene.
 absl::StatusOr<Contents> read_group(const Field& in, const scene::Group& from, SceneDraft& draft) {
   Shapes shapes;
   Contents placed;
@@ -203,6 +205,7 @@ bool place_copy(const Placements& what, const Transform& placement, const Transf
   return place(what, at, material, to);
 }
 
+/// Places the group that an instance names, once for each of the instance's copies.
 absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const Contents* group, find_group(in, from.of(), draft));
   std::optional<MaterialId> material;

@@ -16,7 +16,7 @@ using InstanceList = google::protobuf::RepeatedPtrField<scene::Instance>;
 /// read.
 absl::Status read_groups(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the instances of the scene or of a group, which is `parent`, into SceneDraft::placed. The
+/// Reads the instances of `parent`, which is the scene or a group, into SceneDraft::placed. The
 /// groups to which they refer MUST have been read.
 absl::Status read_instances(const Field& parent, const InstanceList& instances, SceneDraft& draft);
 

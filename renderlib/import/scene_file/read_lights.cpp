@@ -67,8 +67,8 @@ absl::Status read_sides(const Field& in, const Numbers& from, bool mirrored, con
   // The sine of the angle between axis and up must be above 1e-12.
   if (!(length_squared(right) > 1e-24)) {
     return in.error("up", from.empty()
-                              ? "is [0, 1, 0] unless written, but this is parallel to the light's "
-                                "axis; write another vector, for example [0, 0, 1]"
+                              ? "is [0, 1, 0] unless written, and this vector is parallel to the "
+                                "light's axis; write another vector, for example [0, 0, 1]"
                               : "must not be zero or parallel to the light's axis");
   }
   image.right = normalize(right);
@@ -122,7 +122,7 @@ absl::Status read_spot_image(const Field& in, const scene::SpotLight& from, doub
                              SceneDraft& draft, SpotLight& light) {
   if (!from.has_image()) {
     if (!from.up().empty() || from.mirrored()) {
-      return in.error(from.mirrored() ? "mirrored" : "up", "places an image, but there is none");
+      return in.error(from.mirrored() ? "mirrored" : "up", "is only for a light with an image");
     }
     return absl::OkStatus();
   }

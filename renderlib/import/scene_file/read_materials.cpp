@@ -1,6 +1,7 @@
 // Reads the materials of a scene file: read_kind() calls one function for each kind. Then the
-// relief (a normal map or a bump map), the opacity and the emission are read, which all kinds
-// except emissive, gltf and mix can have.
+// relief (a normal map or a bump map), the opacity and the emission are read. All kinds except
+// emissive, gltf and mix can have these properties. Glass may have a priority: where several such
+// glasses overlap, only the glass of the highest priority is present.
 
 #include "renderlib/import/scene_file/read_materials.h"
 

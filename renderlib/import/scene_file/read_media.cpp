@@ -34,6 +34,8 @@ absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool gi
   return scaled;
 }
 
+/// Reads the coefficients and the grids of a medium. The field `density` is a factor of all
+/// coefficients.
 absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from, SceneDraft& draft) {
   if (from.has_albedo() && (from.has_absorption() || from.has_scattering())) {
     return in.error("albedo", "write albedo, or absorption and scattering, not both");

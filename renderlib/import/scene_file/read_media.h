@@ -33,8 +33,8 @@ absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, Medi
 /// Places `boundary` at `placement` in the space of `to`. boundary_of() MUST have returned the
 /// boundary, and the boundary MUST have no frame (a coordinate system, geometry/frame.h). If the
 /// medium inside has grids, a frame with this placement is added to `to`, and the boundary is put
-/// into this frame. So the grids are defined in the boundary's space before the placement
-/// (scene/media.h). If the medium has no grids, only the boundary's transform is changed.
+/// into this frame. So the grids move with the placement (scene/media.h). If the medium has no
+/// grids, only the boundary's transform is changed.
 void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
                 Placements& to);
 

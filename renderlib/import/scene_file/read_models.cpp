@@ -20,6 +20,8 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the animation that the entry names, or else the animation that was chosen for the
+/// import.
 AnimationChoice animation_of(const scene::Model& from, const SceneDraft& draft) {
   return from.animation().empty() ? draft.animation : AnimationChoice{from.animation()};
 }
@@ -77,7 +79,8 @@ void add_lights(const std::string& file, const Model& model, const Transform& to
   }
 }
 
-/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`.
+/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`. If
+/// `material` is set, it replaces the materials of all instances.
 absl::Status place_model(const Field& in, const Placements& what, const Transform& placement,
                          const std::vector<Key>& keys, std::optional<MaterialId> material,
                          Placements& to) {

@@ -9,9 +9,9 @@ namespace bandsaw {
 
 using ModelList = google::protobuf::RepeatedPtrField<scene::Model>;
 
-/// Reads the models of `parent`, which is a scene or a group of it, into SceneDraft::placed, and
-/// their cameras into SceneDraft::cameras. Each file is read once. The scene's materials MUST have
-/// been read.
+/// Reads the models of `parent`, which is the scene or a group, into SceneDraft::placed. The
+/// cameras of the models are added to SceneDraft::cameras, and their lights to the scene. Each file
+/// is read once. The scene's materials MUST have been read.
 absl::Status read_models(const Field& parent, const ModelList& models, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -76,6 +76,7 @@ Transform transform_of(const Written& written) {
   return translation(written.translate) * placement;
 }
 
+/// Reads a placement that is written as scale, rotate and translate, and not as a matrix.
 template <class Message>
 absl::StatusOr<Transform> read_any_placement(const Field& in, const Message& from) {
   ASSIGN_OR_RETURN(const Written written, read_written(in, from));
@@ -171,6 +172,7 @@ absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
   return key;
 }
 
+/// Reads the keys of an object, and adds keys where the rotation between two of them is large.
 template <class Message>
 absl::StatusOr<std::vector<Key>> read_any_keys(const Field& in, const Message& from) {
   std::vector<WrittenKey> written;

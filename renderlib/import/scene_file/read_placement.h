@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads placements of a scene file: scale, then rotate, then translate, once or at several times.
+// Reads placements of a scene file. A placement is scale, then rotate, then translate, or a matrix.
+// A moving object has keys, which are placements at several times.
 
 #include <vector>
 

@@ -13,9 +13,9 @@
 namespace bandsaw {
 namespace {
 
-/// Reads the number `name`, which has a constant in [0, most], a texture or both, and divides the
-/// constant by `most`. The constant is 1 if there is only a texture. If the number is not `given`,
-/// returns `otherwise` without dividing it.
+/// Reads the number `name`. The file gives a constant in [0, most], a texture, or both. The
+/// constant is 1 if there is only a texture. The result holds the constant divided by `most`. If
+/// the number is not `given`, returns `otherwise` without dividing it.
 absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given,
                                    const scene::Parameter& from, double otherwise,
                                    SceneDraft& draft, double most = 1) {

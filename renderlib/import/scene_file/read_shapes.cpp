@@ -1,7 +1,8 @@
-// Reads each shape of a scene file as values of geometry/shapes.h. A shape that moves becomes a
-// group in a frame, a moving coordinate system (geometry/frame.h). A shape with a medium inside
-// also becomes a boundary of that medium. Contents::seen holds the placed shapes that have a
-// surface, Contents::filled the boundaries.
+// Converts each shape of a scene file to a shape of geometry/shapes.h, and a box to six quads. A
+// shape that moves becomes a group in a frame, a moving coordinate system (geometry/frame.h). If a
+// shape has a medium inside, a boundary is added too, which is the closed shape that the medium
+// fills. Contents::seen holds the placed shapes that have a surface, Contents::filled the
+// boundaries.
 
 #include "renderlib/import/scene_file/read_shapes.h"
 

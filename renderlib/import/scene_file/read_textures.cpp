@@ -68,6 +68,7 @@ absl::StatusOr<UvTransform> read_uv_transform(const Field& in, const scene::Imag
                       turn.cos * scale.y, offset.y}};
 }
 
+/// Reads how a texture uses its image: wrapping, filter, encoding, uv set and uv transform.
 absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTexture& from) {
   using Proto = scene::ImageTexture;
   TextureStore::Use use;
@@ -131,8 +132,8 @@ MaybeId read_part(const Field& in, const std::string& name, const scene::Texture
 }
 
 // Reads the size of a checker's cells along each axis. The checker has `axes` axes, 2 or 3. The
-// file gives a number for each axis, or one number for all axes. The size is 1 where it is absent,
-// and along z if there are 2 axes.
+// file gives a number for each axis, or one number for all axes. The sizes are 1 if the file gives
+// none. The size along z is also 1 if there are 2 axes.
 absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int axes) {
   const Numbers& list = from.size();
   if (list.size() > 1 && list.size() != axes) {

@@ -99,7 +99,7 @@ absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, Vie
   }
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
   // The distance of the point look_at is at least the largest coordinate of the position. So the
-  // sum keeps the precision of the direction.
+  // sum of position and direction keeps the precision of the direction.
   const double ahead = std::max(1.0, max_abs(view.position));
   view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
   view.up = turn.direction({0, 1, 0});

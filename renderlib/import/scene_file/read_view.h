@@ -16,8 +16,8 @@ namespace bandsaw {
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
                                    const Shutter& shutter);
 /// Sets the window of `camera`, and exchanges left and right of the image if `from` is mirrored.
-/// `in` is the field of `from`. Returns INVALID_ARGUMENT if the window or the resulting camera is
-/// invalid.
+/// `in` is the place of the message `from`. Returns INVALID_ARGUMENT if the window or the resulting
+/// camera is invalid.
 absl::Status set_window(const Field& in, const scene::Camera& from, Camera& camera);
 /// Returns the shutter interval of the frame at `time`, in seconds of the scene's time. The scene
 /// file gives the interval relative to the frame's time. By default the shutter opens and closes at

@@ -1,5 +1,6 @@
-// Reads the grids of a medium of a scene file from their files, places each in the space of the
-// medium, and adds it to the scene's grids once.
+// Reads the grids of a medium from volume files, places each grid in the space of the medium, and
+// adds it to the scene's grids. If several media use a grid with the same settings, it is added
+// once.
 
 #include "renderlib/import/scene_file/read_volumes.h"
 

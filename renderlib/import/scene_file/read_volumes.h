@@ -10,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Reads the grids of a medium, the message of `in`, and adds them to the grids of the scene. A
-/// grid that several media use with the same settings is added once.
+/// Reads the grids of the medium `from`, whose place is `in`, and adds them to the grids of the
+/// scene. A grid that several media use with the same settings is added once.
 absl::StatusOr<MediumGrids> read_grids(const Field& in, const scene::Medium& from,
                                        SceneDraft& draft);
 

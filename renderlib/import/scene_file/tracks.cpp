@@ -65,6 +65,7 @@ PathStep step_of(absl::string_view text) {
           std::string(text.substr(bracket + 1, text.size() - bracket - 2))};
 }
 
+/// Returns the name of an entry of a list; "" if entries of this kind have no names.
 std::string name_of_entry(const Message& entry) {
   const FieldDescriptor* name = entry.GetDescriptor()->FindFieldByName("name");
   return name != nullptr && name->cpp_type() == FieldDescriptor::CPPTYPE_STRING
@@ -196,6 +197,8 @@ absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
   return Curve(std::move(times), std::move(values), static_cast<std::size_t>(width), interpolation);
 }
 
+/// Writes the values of a track into a field: all of them if the field is a list, otherwise the
+/// only one.
 void set(const Target& to, const std::vector<double>& values) {
   const Reflection& reflection = *to.message->GetReflection();
   const bool is_double = to.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;

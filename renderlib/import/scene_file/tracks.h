@@ -8,10 +8,10 @@
 
 namespace bandsaw {
 
-/// Returns the scene at `time`, which is a copy of `from` in which each track has set its field.
-/// `root` gives the place of `from` in the file for messages of errors. Returns INVALID_ARGUMENT if
-/// a track has a field that does not exist or cannot change, keys that do not increase in time, or
-/// a wrong number of values.
+/// Returns a copy of `from` in which each track has set its field to the value at `time`. `root`
+/// gives the place of `from` in the file for messages of errors. Returns INVALID_ARGUMENT if a
+/// track has a field that does not exist or cannot change, keys that do not increase in time, or a
+/// wrong number of values.
 absl::StatusOr<scene::Scene> scene_at(const Field& root, const scene::Scene& from, double time);
 
 /// Returns true if a track changes the camera.

@@ -1,5 +1,6 @@
 // Collects the cameras of a scene's models, and finds one by name. A camera has three names, which
-// are tried in this order: the name of its node, its own name, and "FILE/NODE".
+// are tried in this order: the name of its node (the object of the model that carries the camera),
+// its own name, and "FILE/NODE".
 
 #include "renderlib/import/scene_file/use_camera.h"
 

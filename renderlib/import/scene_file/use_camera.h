@@ -1,8 +1,9 @@
 #pragma once
 
-// Selects cameras of models by name. A name is compared first with the names of the cameras' nodes.
-// If no node has this name, it is compared with the cameras' own names, and then with "FILE/NODE".
-// "FILE/NODE" is useful if several models have a node of the same name.
+// Selects cameras of models by name. A node is the object of a model that carries a camera. A name
+// is compared first with the names of the cameras' nodes. If no node has this name, the name is
+// compared with the cameras' own names, and then with "FILE/NODE". "FILE/NODE" is useful if several
+// models have a node of the same name.
 
 #include <string>
 #include <vector>
