@@ -1,6 +1,6 @@
 // Named spectra: indices of refraction of metals and glasses, and illuminants. The tables hold
-// measured values of the cited papers. Where linear interpolation between the remaining wavelengths
-// is within a hundredth of the paper's curve, wavelengths are left out.
+// measured values of the cited papers. A wavelength is left out if linear interpolation between the
+// remaining wavelengths differs from the paper's curve by at most a hundredth.
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-// The CIE's tables of the standard observer and of daylight (observer.h says which), with linear
-// interpolation.
+// The CIE's tables of the standard observer of 1931 (2 degrees) and of the daylight D65, with
+// linear interpolation.
 
 #include "renderlib/import/spectrum/observer.h"
 

@@ -74,9 +74,9 @@ absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers) {
     if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]) ||
         (i > 0 && !(numbers[i] > numbers[i - 2]))) {
       return absl::InvalidArgumentError(
-          absl::StrCat("a spectrum's wavelengths must increase and its numbers must be finite, at "
-                       "pair ",
-                       i / 2 + 1));
+          absl::StrCat("pair ", i / 2 + 1,
+                       " of a spectrum must have finite numbers, and a wavelength above the "
+                       "wavelength of the pair before"));
     }
     out.wavelengths.push_back(numbers[i]);
     out.values.push_back(numbers[i + 1]);
@@ -115,8 +115,9 @@ Sampled zero_outside(const Sampled& from) {
 }
 
 Sampled blackbody(double kelvin) {
-  // Planck's law, relative to the peak by Wien's displacement law. kSecond is the second radiation
-  // constant hc / k_B, and kWien is Wien's displacement constant, both in nm K.
+  // Planck's law, divided by its value at the peak, whose wavelength is kWien / kelvin. kSecond is
+  // the second radiation constant hc / k_B, and kWien is Wien's displacement constant. Both have
+  // the unit nm K.
   constexpr double kSecond = 1.438776877e7;
   constexpr double kWien = 2.897771955e6;
   const auto planck = [kelvin](double nm) {

@@ -1,7 +1,7 @@
-// Reads *.vdb files by the library OpenVDB. It reads fog volumes of floats, halves, doubles or
-// vectors of three floats, and stores them in bricks, which are cubes of 8 x 8 x 8 cells.
-// Everything happens on the calling thread, because the library starts no thread for reading.
-// Cross-compiled programs are built without OpenVDB.
+// Reads *.vdb files with the library OpenVDB: fog volumes of floats, halves, doubles or vectors of
+// three floats. The numbers are stored in bricks, which are cubes of 8 x 8 x 8 cells. Everything
+// happens on the calling thread, because the library starts no thread for reading. Cross-compiled
+// programs are built without OpenVDB.
 
 #ifndef BANDSAW_NO_OPENVDB
 

@@ -104,8 +104,8 @@ absl::StatusOr<FileGrid> read_vol(absl::Span<const std::byte> bytes) {
                                               static_cast<std::uint32_t>(header.cells[1]),
                                               static_cast<std::uint32_t>(header.cells[2])};
   const auto channels = static_cast<std::uint32_t>(header.channels);
-  // A side has at most kMaxGridSide = 2^20 cells, so there are at most 2^60 cells, and their
-  // product does not overflow.
+  // Each of the three sides has at most kMaxGridSide = 2^20 cells, so the product of the sides is
+  // at most 2^60 and does not overflow.
   const std::uint64_t claimed = std::uint64_t{cells[0]} * cells[1] * cells[2];
   const std::uint64_t most = (bytes.size() - kHeaderBytes) / number_bytes(header.encoding);
   if (claimed > most / channels) {
