@@ -16,10 +16,13 @@ namespace {
 /// The smallest GGX alpha of a wide lobe: a roughness of 1/2.
 constexpr double kWideAlpha = 0.25;
 
+/// Returns true if the coat is smooth, which gives a delta direction and no lobe, or has a wide
+/// lobe.
 bool is_wide(const PlasticBsdf& bsdf) {
   return !bsdf.facets || std::min(bsdf.facets->alpha_u, bsdf.facets->alpha_v) >= kWideAlpha;
 }
 
+/// Returns true if the surface and, if there is one, the coat have wide lobes.
 bool is_wide(const MetallicRoughnessBsdf& bsdf) {
   return bsdf.surface.alpha >= kWideAlpha && (bsdf.coat == 0 || bsdf.coating.alpha >= kWideAlpha);
 }

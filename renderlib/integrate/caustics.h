@@ -57,9 +57,9 @@ class PhotonMaps {
   static constexpr std::uint64_t kMinSamplesOfMap = 8;
   /// Returns the number of the map of a sample. The first four maps have 8 samples each. In
   /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of maps
-  /// grows only with the root of the number of samples. It must not grow faster, because a map
-  /// costs as much as 10^5 to 10^6 samples, and because a band of many samples must not need more
-  /// maps than a worker can keep.
+  /// grows only with the square root of the number of samples. It must not grow faster, because a
+  /// map costs as much as 10^5 to 10^6 samples, and because a band (rows of the image that one
+  /// worker renders) must not need more maps than the worker can keep, even with many samples.
   static std::uint32_t number_of(std::uint64_t sample);
 
   /// `casters` MUST outlive this object.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds portals, which are openings through which the background lights a room
-// (guiding/portals.h). A portal is a rectangle. The few rays that leave the scene pass through it.
+// Finds portals, which are openings through which the background lights a room (guiding/portals.h).
+// A portal is a rectangle. Only few rays leave the scene, and most of them pass through a portal.
 
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,9 @@
 // Portals, which are rectangular openings through which rays escape from the scene, are found one
-// after the other. Candidates are rectangles in planes. These are the planes of the walls and, in
-// each direction, the plane in which the crossings of the escaping rays are closest together, as in
-// an opening without a wall. A plane may have several openings, so its crossings are divided where
-// they have gaps. The best rectangle of all becomes a portal, and the search goes on with the rays
-// that do not pass through it.
+// after the other. Candidates are rectangles in planes of walls. For each direction there is one
+// more plane, because an opening need not lie in a wall: the plane in which the crossings of the
+// escaping rays are closest together. A plane may have several openings, so its crossings are
+// divided where they have gaps. The best rectangle of all becomes a portal, and the search goes on
+// with the rays that do not pass through it.
 
 #include "renderlib/integrate/fit_portals.h"
 
@@ -103,6 +103,7 @@ Bounds trimmed(std::vector<double>& values, double part) {
   return {low, values[values.size() - 1 - static_cast<std::size_t>(skip)]};
 }
 
+/// Returns the coordinates along `axis` at which the rays cross the plane at `offset`.
 std::vector<double> crossings(const Rays& rays, const Planes& planes, double offset,
                               const Vec3& axis) {
   std::vector<double> out;

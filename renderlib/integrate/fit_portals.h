@@ -1,7 +1,7 @@
 #pragma once
 
-// Fits portals (guiding/portals.h) to rays. A portal is a rectangle. The few rays that leave the
-// scene pass through it.
+// Fits portals (guiding/portals.h) to rays. A portal is a rectangular opening of a scene that only
+// few rays leave. Most of these rays pass through a portal.
 
 #include "absl/types/span.h"
 #include "renderlib/guiding/portals.h"

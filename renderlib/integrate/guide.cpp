@@ -1,6 +1,7 @@
-// Follows mirrors, smooth glass and nearly smooth metal from the camera, and returns the albedo or
-// the shape (two coordinates of the normal, and the depth) of the first other surface. The denoiser
-// uses such pictures, which have hardly any noise, to find edges.
+// Follows a path from the camera through mirrors, smooth glass and nearly smooth metal to the first
+// surface of another kind. Returns the albedo of that surface, or its shape (two coordinates of the
+// normal, and the length of the path). Pictures of these values are the guides of the denoiser:
+// they have hardly any noise, and the denoiser finds edges by them.
 
 #include "renderlib/integrate/guide.h"
 

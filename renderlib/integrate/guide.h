@@ -1,7 +1,8 @@
 #pragma once
 
-// Guides of the denoiser: albedo, normal and distance of the first surface that is neither a mirror
-// nor glass. These images have hardly any noise, and the denoiser finds edges by them.
+// Guides of the denoiser: albedo, normal and distance of the first surface that is not a mirror,
+// smooth glass or nearly smooth metal. These images have hardly any noise, and the denoiser finds
+// edges by them.
 
 #include <cstdint>
 
@@ -10,13 +11,14 @@
 
 namespace bandsaw {
 
-/// Returns the sample's value. `integrator` MUST be kGuideAlbedo or kGuideShape. For kGuideAlbedo,
-/// the value is the albedo of the surface, times the tint of the mirrors and panes before it. For
-/// kGuideShape, it is two coordinates of the normal, to the right and upwards in the camera's view,
-/// and the length of the path. If the path leaves the scene, the value for kGuideAlbedo is L / (1 +
-/// L), where L is the background's radiance times the tint, and (0.5, 0.5, 0) for kGuideShape.
-/// Follows the same path as path_radiance() through mirrors, smooth glass and nearly smooth metal,
-/// at most kMaxGuideBounces times. All values are >= 0. Adds the number of rays to `rays`.
+/// Returns the value of a sample of a guide. `integrator` MUST be kGuideAlbedo or kGuideShape. For
+/// kGuideAlbedo, the value is the albedo of the surface, times the tint of the mirrors and panes
+/// before it. For kGuideShape, it is two coordinates of the normal, to the right and upwards in the
+/// camera's view, and the length of the path. If the path leaves the scene, the value for
+/// kGuideShape is (0.5, 0.5, 0). For kGuideAlbedo it is L / (1 + L), where L is the background's
+/// radiance times the tint. Follows the same path as path_radiance() through mirrors, smooth glass
+/// and nearly smooth metal, at most kMaxGuideBounces times. All values are >= 0. Adds the number of
+/// rays to `rays`.
 Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                 const PixelSampler& sampler, std::uint64_t sample, std::uint64_t& rays);
 

@@ -1,7 +1,7 @@
-// A few samples of some pixels are taken. Their variance is measured. The field of path guiding
-// predicts how much of the variance guiding and photon maps would remove. Its cells hold the light
-// that arrives at a place; some are fitted to paths, others to photons. The constants are the
-// limits above which each method pays.
+// Decides whether path guiding and photon maps pay. The variance of a few samples of some pixels is
+// measured. The field of path guiding predicts how much of this variance guiding and photon maps
+// would remove. The cells of the field hold the light that arrives at a place: some cells are
+// fitted to paths, others to photons. The constants are the limits above which each method pays.
 
 #include "renderlib/integrate/guiding_gain.h"
 
@@ -29,8 +29,8 @@ constexpr double kDarkest = 1.0 / 16;
 /// they gain (NOTES.md, "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and
 /// kMinShareOfPhotons for the cells of photons.
 constexpr double kMinShareOfPaths = 0.15;
-/// If the variance is above this, the cells of paths pay, whatever the field predicts. So few
-/// paths of the training have then found light that the field cannot predict the gain.
+/// If the variance is above this, the cells of paths pay, whatever the field predicts. In such a
+/// scene, too few paths of the training have found light for the field to predict the gain.
 constexpr double kRareLight = 1.5;
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;

@@ -32,7 +32,7 @@ struct GuidingGain {
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
 
-  /// Returns the share of `part` in the sum of itself and the measured variance, in [0, 1].
+  /// Returns the share of `part` in the sum of `part` and the measured variance, in [0, 1].
   double share_of(double part) const;
   /// Each returns true if its method saves more variance than it costs in time.
   bool paths_pay() const;    ///< guiding by the cells of paths
@@ -52,7 +52,7 @@ bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 /// surface that can be guided, and estimates the parts from the cells of `field` there. A cell
 /// holds the irradiance, and the second moment of a sampled direction's contribution (GuidingCell).
 /// `options.guiding` MUST be null. The result is a pure function of all arguments except
-/// `preparation`. Returns std::nullopt if it was stopped.
+/// `preparation`. Returns std::nullopt if the preparation was stopped.
 std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
                                          const GuidingField& field, const PathOptions& options,
                                          const Preparation& preparation);

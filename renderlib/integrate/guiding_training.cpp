@@ -1,7 +1,9 @@
+// Trains the field of path guiding, which holds from where light arrives at the places of a scene.
 // The training has three rounds: photons, a small round of paths, and a large round of paths. Each
-// is divided among a fixed number of chunks. The threads trace the chunks, and the records of the
-// chunks are joined in order. A pilot (the same rounds with fewer photons and paths) decides
-// whether the training pays. Gathering means that indirect light comes from photon maps.
+// round is divided among a fixed number of chunks. The threads trace the chunks. Each chunk gives
+// records of the light that arrived at surfaces, and the records of all chunks are joined in order.
+// A pilot (the same rounds with fewer photons and paths) decides whether the training pays.
+// Gathering means that indirect light comes from photon maps.
 
 #include "renderlib/integrate/guiding_training.h"
 

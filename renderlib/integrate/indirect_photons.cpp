@@ -20,8 +20,9 @@
 namespace bandsaw {
 namespace {
 
-/// Return the random numbers of origins and of photons: those of pixels outside of all images, in
-/// columns of their own. Photons of caustics use column kBeyondImages.
+/// These functions return the random numbers of origins and of photons, which are the random
+/// numbers of pixels outside of all images. Origins and photons have one column of pixels each.
+/// Photons of caustics use column kBeyondImages.
 PixelSampler sampler_of_origins(const PhotonChunk& chunk) {
   return {chunk.seed, kBeyondImages + 1, kBeyondImages + chunk.map};
 }

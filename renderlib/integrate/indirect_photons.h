@@ -8,15 +8,15 @@
 //
 // All light that a receiver scatters is thus divided into two parts. The first part arrives from
 // lamps without meeting another receiver, directly or over mirrors, glass and other surfaces. It is
-// found by paths, and its caustics come from their own photon map. The second part arrives from
-// other receivers. It is estimated from the photons.
+// found by paths, but the caustics in it come from a photon map of caustics. The second part
+// arrives from other receivers. It is estimated from the photons.
 //
 // A photon starts at a random point of a receiver, in a random direction. The power of the photon
 // is computed from the radiance that the point scatters in the direction of the photon. Only the
 // first part of the light at the point is counted in this radiance. A path measures the radiance as
 // if the camera were in the direction of the photon. So lamps, environments, portals and caustics
-// light the starting points exactly as they light the paths of the image. From there on the photon
-// is scattered as paths are, and it is stored at every receiver that it meets.
+// light the starting points exactly as they light the paths of the image. After its start the
+// photon is scattered as paths are, and it is stored at every receiver that it meets.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,7 @@
-// Finds the hits of a ray one after the other and skips those at surfaces that are not there for
-// this sample: holes by alpha, and boundaries of glass within a glass of higher priority.
+// Finds the hits of a ray one after the other, and skips hits at surfaces that are not there for
+// this sample: holes by alpha, and boundaries of glass within a glass of higher priority. Where
+// glasses with a priority (nested glasses) overlap, only the glass of the highest priority is
+// present.
 
 #include "renderlib/integrate/intersect_visible.h"
 

@@ -35,8 +35,8 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
                                               std::uint32_t bounce, NestedDielectrics& nesting,
                                               std::uint64_t& rays);
 
-/// Sets the directions of growing u and v (or the derivatives of the position by them) that the
-/// material of the point needs.
+/// Sets the directions in which u and v grow, or the derivatives of the position by u and v, if the
+/// material of the point needs them.
 void add_directions(const Scene& scene, SurfacePoint& point);
 
 }  // namespace bandsaw

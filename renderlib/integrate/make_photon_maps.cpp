@@ -1,5 +1,7 @@
 // make_photon_maps() traces the photons in chunks, on all threads, and builds the maps from them.
-// The other functions exclude scenes in which photons and paths would not find the same light.
+// The other functions exclude scenes in which photons and paths would not find the same light. A
+// caster is a surface that casts caustics. A receiver is a surface that scatters light over wide
+// angles. Indirect photons start at origins, which are points of receivers.
 
 #include "renderlib/integrate/make_photon_maps.h"
 
@@ -31,8 +33,8 @@ constexpr double kLargestLamp = 0.5;
 /// Number of points that are tried for one indirect photon.
 constexpr std::uint64_t kOriginsPerPhoton = 4;
 
-/// Each photon spreads its power over a disk. A path takes indirect light from the map if its
-/// length since the last receiver is at least this many times the mean radius of the disks,
+/// Each photon spreads its power over a disk. A path takes indirect light from the map if the
+/// path's length since the last receiver is at least this many times the mean radius of the disks,
 /// weighted by power. So the disks are small as seen from the surface that gathers the light.
 constexpr double kGatherRadii = 3;
 
@@ -77,10 +79,11 @@ PhotonChunk chunk_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t 
 
 /// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
 /// multiply the area of the disks of map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha
-/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and the factor of the radius is the root of
-/// it, (n + 1)^(-1/6). `kind` is 0 for the map of caustics and 1 for the map of indirect light, so
-/// that PhotonMap divides space differently for the two maps of one number. `max_halvings` says how
-/// often the radius of a disk may be halved where the disk reaches an edge or a wall.
+/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and the factor of the radius is the square
+/// root of this, (n + 1)^(-1/6). `kind` is 0 for the map of caustics and 1 for the map of indirect
+/// light, so that PhotonMap divides space differently for the two maps of one number.
+/// `max_halvings` says how often the radius of a disk may be halved where the disk reaches an edge
+/// or a wall.
 PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const Vec3& origin,
                  const PhotonMapKey& key, std::uint64_t kind, int max_halvings,
                  const Preparation& preparation) {

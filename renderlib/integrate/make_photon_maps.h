@@ -14,17 +14,18 @@
 namespace bandsaw {
 
 /// Returns the number of photons of caustics that are started for each map of an image of this size
-/// in pixels. It is 4 for each pixel, clamped to [2^14, 2^18]. Within these limits, twice as many
-/// paths share each of the first maps. The number of indirect photons is a quarter of the number
-/// for caustics, but at least 2^15. Fewer are enough, because paths see these photons from afar and
-/// average their noise.
+/// in pixels. It is 4 for each pixel, clamped to [2^14, 2^18]. Within these limits, each of the
+/// first maps is shared by twice as many paths as it has photons. The number of indirect photons is
+/// a quarter of the number for caustics, but at least 2^15. Fewer are enough, because paths see
+/// these photons from afar and average their noise.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 
-/// Makes the map of caustics if the sources have casters, and the map of indirect light if they
-/// have surfaces. The result is a pure function of the scene, the sources and the key. The radii
-/// fall with the number of the map, so that the mean over maps converges to the irradiance (Knaus
-/// and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach", section 4, alpha =
-/// 2/3). Returns nullptr if it was stopped.
+/// Makes the map of caustics if the sources have casters (surfaces that cast caustics), and the map
+/// of indirect light if the sources have surfaces. The result is a pure function of the scene, the
+/// sources and the key. The radii fall with the number of the map, so that the mean over maps
+/// converges to the irradiance (Knaus and Zwicker 2011, "Progressive Photon Mapping: A
+/// Probabilistic Approach", section 4, alpha = 2/3). Returns nullptr if the preparation was
+/// stopped.
 std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const PhotonSources& sources,
                                                    const PhotonMapKey& key,
                                                    const Preparation& preparation);

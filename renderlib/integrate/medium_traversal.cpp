@@ -1,7 +1,7 @@
-// Finds the crossings of the ray with boundaries one after the other and keeps the first ones. For
-// each medium it counts how many shapes contain the origin: each exit ahead adds one, each entry
-// takes one away. On the walk along the ray, each exit then takes one away, and each entry adds
-// one.
+// Finds the crossings of a ray with the boundaries of media one after the other, and stores the
+// first few. First counts, for each medium, how many shapes with this medium contain the ray's
+// origin: each exit ahead adds one, and each entry takes one away. Then walks along the ray, where
+// each exit takes one away, and each entry adds one.
 
 #include "renderlib/integrate/medium_traversal.h"
 

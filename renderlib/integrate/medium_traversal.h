@@ -3,9 +3,9 @@
 // Splits a ray into segments at the boundaries of media (scene/media.h).
 //
 // The set of media around the ray's origin is computed for each ray from the boundaries ahead of
-// it: if the ray leaves a medium more often than it enters it, the origin is inside. A path carries
-// no medium state. So cameras and lights inside media, surfaces that touch a boundary or lie in it,
-// and reflections at a filled glass need no special cases.
+// it: if the ray leaves a medium more often than it enters the medium, the origin is inside. A path
+// carries no medium state. So cameras and lights inside media, surfaces that touch a boundary or
+// lie in it, and reflections at a filled glass need no special cases.
 
 #include <array>
 #include <cstddef>
@@ -132,9 +132,10 @@ class MediumTraversal {
   bool all_kept_ = true;   ///< false: crossings may be left that are not stored
 };
 
-/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel; an
-/// estimate from `numbers` where a medium varies in space. The direction need not be a unit vector.
-/// The scene MUST have media. Adds the number of rays traced to `rays`.
+/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel. If
+/// a medium varies in space, its transmittance is estimated with the random numbers `numbers`. The
+/// direction need not be a unit vector. The scene MUST have media. Adds the number of rays traced
+/// to `rays`.
 Rgb media_transmittance(const Scene& scene, const Ray& ray, NumberStream numbers,
                         std::uint64_t& rays);
 

@@ -3,7 +3,7 @@
 //
 // A `Receiver` (light/receiver.h) is the point for which a light is sampled. A receiver of caustics
 // (CausticRole::kReceiver) is a rough surface whose caustics come from photon maps, if there are
-// any; a caster is a mirror, glass or metal that sends light there (caustics.h).
+// any. A caster is a mirror, glass or metal that sends light to receivers of caustics (caustics.h).
 
 #include "renderlib/integrate/path.h"
 
@@ -70,8 +70,8 @@ Rgb weighted_background(const Scene& scene, const Portals* portals, const Previo
   return background * static_cast<float>(bsdf_sampling_weight(previous, light_pdf));
 }
 
-/// Describes the other strategies at the surface at which a light is sampled: the inputs of the MIS
-/// weight of light sampling.
+/// The inputs of the MIS weight of light sampling at a surface. They describe the other strategies
+/// that can sample the same light.
 struct CompetingStrategies {
   Technique technique = Technique::kBoth;
   /// True in local shading, where a direction sampled from the BSDF finds only the environment.
@@ -310,8 +310,8 @@ Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfaceP
          static_cast<float>(counts);
 }
 
-/// Adds the light of photon maps that a receiver scatters along the path. Returns true if that
-/// includes all indirect light, so that the path ends at the next receiver.
+/// Adds the light of photon maps that a receiver scatters along the path. Returns true if the added
+/// light includes all indirect light, so that the path ends at the next receiver.
 bool add_photons(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
                  std::uint32_t depth, PathState& path) {
   const TracedMaps& maps = context.options.maps->of_sample(context.sample);
@@ -337,7 +337,8 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const Receiver behind{point.position, -*receiver.normal, point.time};
   // Where much light arrives from behind, lights are sampled in the same way on both sides.
   const bool both_sides = is_diffuse_behind(bsdf);
-  // Local shading ends here; the sampled direction only collects the environment.
+  // In local shading, the path ends at such a surface. The sampled direction only collects the
+  // environment.
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
   const CausticRole role = options.maps == nullptr
                                ? CausticRole::kOther

@@ -21,7 +21,7 @@ struct PrimaryVertex {
   SurfacePoint point;
   Vec3 normal;  ///< geometric normal on the viewer's side
   Bsdf bsdf;
-  const GuidingCones* cones;
+  const GuidingCones* cones;  ///< directions from which path guiding expects light
 };
 
 /// The second vertex of a pixel's path, if all pixels may use it.
@@ -39,9 +39,9 @@ bool is_only_diffuse(const Material& material) {
 }
 
 /// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
-/// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
-/// is shared; the light of that vertex is not in `path`. `cones` is empty memory of the caller, in
-/// which the cones of `primary` are stored.
+/// `primary` if the pixel can receive light from shared vertices. Sets `shared` if the second
+/// vertex of the path is shared. Then the light that leaves this vertex is in `shared` and not in
+/// `path`. `cones` is empty memory of the caller, in which the cones of `primary` are stored.
 void trace_own_path(const PathContext& context, PathState& path, GuidingCones& cones,
                     std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
   const Ray camera_ray = path.ray;
@@ -70,7 +70,7 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
     return;
   }
   const Rgb own = path.radiance;
-  // Light that passes the first surface stays with its own pixel.
+  // If the path passes through the first surface, its light stays with its own pixel.
   const bool is_shared = primary && !path.previous.delta &&
                          dot(path.ray.direction, primary->normal) > 0 &&
                          is_only_diffuse(context.scene.material(second->material));
@@ -91,10 +91,9 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
 using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
 
 /// The connection of a primary vertex to a shared vertex. All numbers are zero if one vertex is
-/// behind the surface of the other vertex. They are also zero if the BSDF scatters no light from
-/// the shared vertex, even if the pdf of the direction is above 0. In this case a path of the
-/// primary vertex never reaches the shared vertex, because a path ends where its throughput is
-/// black.
+/// behind the surface of the other vertex. They are also zero if the BSDF at the primary vertex
+/// scatters no light from the shared vertex, even if the pdf of this direction is above 0: a path
+/// that samples this direction ends at once, because its throughput is black.
 struct Connection {
   BsdfValue scattered;              ///< at the primary vertex; the pdf is by solid angle
   double solid_angle_per_area = 0;  ///< converts pdfs by solid angle to pdfs by area
@@ -145,8 +144,8 @@ void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std:
                          const PathOptions& options) {
   BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
   PrimaryVertices primary;
-  // The cones are not members of `primary`, because std::optional zeroes its memory, which would be
-  // large with them.
+  // The cones are not members of `primary`, because std::optional zeroes its memory, and cones need
+  // much memory.
   std::array<GuidingCones, kMaxReusePixels> cones;
   std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
   for (std::size_t i = 0; i < pixels.size(); ++i) {

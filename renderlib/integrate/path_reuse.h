@@ -10,10 +10,15 @@
 //   p_j(y) = pdf_j(y) cos(y) V / |y - x_j|^2
 //
 // pdf_j(y) is the pdf, by solid angle, of the direction from x_j to y. cos(y) is the cosine between
-// this direction and the normal at y. V is the visibility of y from x_j. Let f_j(y) be p_j(y) with
-// the BSDF value at x_j, including its cosine, in place of pdf_j(y). With the balance heuristic
-// over the pdfs of all pixels (Veach 1997, section 9.2.2), y_i contributes f_j(y_i) L_i / sum_k
-// p_k(y_i) to pixel j. The expected value of every pixel equals that of `path_radiance()`.
+// this direction and the normal at y. V is the visibility of y from x_j. Pixel j receives the
+// radiance that leaves y, multiplied by this factor:
+//
+//   f_j(y) = bsdf_j(y) cos(y) V / |y - x_j|^2
+//
+// bsdf_j(y) is the value of the BSDF at x_j for light from y, times the cosine at x_j. With the
+// balance heuristic over the pdfs of all pixels (Veach 1997, section 9.2.2), the vertex y_i
+// contributes f_j(y_i) L_i / sum_k p_k(y_i) to pixel j. The expected value of every pixel equals
+// that of `path_radiance()`.
 //
 // L_i must not depend on the outgoing direction. So only diffuse vertices are shared, and only the
 // light that they scatter. All other light stays with the pixel that sampled it.

@@ -33,9 +33,9 @@ struct PathState {
   /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts), and of
   /// hidden lamps that the path has passed.
   std::uint32_t uncounted = 0;
-  /// For photon maps (integrate/caustics.h, which defines casters and receivers): the number of
-  /// casters since the last receiver; kNoChain if the path had another scattering since then or has
-  /// met no receiver yet.
+  /// For photon maps (integrate/caustics.h): the number of casters (surfaces that cast caustics)
+  /// since the last receiver (a surface that scatters light over wide angles). It is kNoChain if
+  /// the path had another scattering since then, or if it has met no receiver yet.
   std::uint32_t chain = kNoChain;
   bool after_receiver = false;  ///< a receiver of caustics has scattered the path
   /// True if the light of the next receiver was already taken from a photon map of indirect light,

@@ -1,5 +1,5 @@
-// Samples a point of a caster, chooses one side of the surface at random, and samples a light for
-// this side.
+// Samples a point of a caster (a surface that casts caustics), chooses one side of the surface at
+// random, and samples a light for this side.
 
 #include "renderlib/integrate/photon_start.h"
 
