@@ -27,7 +27,7 @@ absl::StatusOr<Vec3> read_direction(const Field& in, const std::string& name, co
 absl::Status check_range(const Field& in, const std::string& name, double value, double least,
                          double most);
 
-/// Reads a colour, each channel in [0, most]. `color` is the message of `in`.
+/// Reads a colour, each channel in [0, most]. `in` is the place of the message `color`.
 absl::StatusOr<Rgb> read_color(const Field& in, const scene::Color& color, float most);
 
 }  // namespace bandsaw

@@ -8,7 +8,7 @@
 namespace bandsaw {
 
 /// Adds the scene file's delta lights (directional, point, spot, projector) to the scene. Returns
-/// INVALID_ARGUMENT with the field's name.
+/// INVALID_ARGUMENT, with the name of the field, if a field is invalid.
 absl::Status read_lights(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 }  // namespace bandsaw

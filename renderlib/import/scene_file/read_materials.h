@@ -8,7 +8,8 @@
 namespace bandsaw {
 
 /// Reads all materials of a scene file with their textures into the scene, and their names into
-/// SceneDraft::materials. Returns INVALID_ARGUMENT with the field's name.
+/// SceneDraft::materials. Returns INVALID_ARGUMENT, with the name of the field, if a field is
+/// invalid.
 absl::Status read_materials(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 /// Returns the material with this name, which is the value of `in`'s field "material". Returns

@@ -13,7 +13,7 @@
 namespace bandsaw {
 
 /// Reads all media, and the name of the fog. The fog is the medium outside of all boundaries.
-/// Returns INVALID_ARGUMENT with the field's name.
+/// Returns INVALID_ARGUMENT, with the name of the field, if a field is invalid.
 absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 /// Returns the medium with this name, which is the value of `in`'s field `field`. Returns
