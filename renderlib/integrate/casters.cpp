@@ -14,10 +14,11 @@ namespace {
 /// Maximum number of primitives that are listed.
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
-/// Metals with a roughness above kRoughest are no casters, because they cast no sharp light. A
-/// material that blends several kinds of surface is a caster if its roughness is at most kRoughest
-/// and its factor of metal is above kRoughest. In a Principled material, the factor of transmission
-/// may be above kRoughest instead of the factor of metal.
+/// Limit of two numbers of a material: its roughness and its factor of metal. Metals with a
+/// roughness above kRoughest are no casters, because they cast no sharp light. A material that
+/// blends several kinds of surface is a caster if its roughness is at most kRoughest and its factor
+/// of metal is above kRoughest. In a Principled material, the factor of transmission may be above
+/// kRoughest instead of the factor of metal.
 constexpr double kRoughest = 0.5;
 
 /// Returns true if surfaces of the material cast caustics. Alpha of a Conductor is the square of

@@ -32,7 +32,8 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
 /// trace_path() calls this function before a random number decides whether a medium on the ray
 /// scatters the path. So the emission of a lamp is added even if the path is then scattered in
 /// front of the lamp. The calls have this order because a lamp is usually brighter than the medium
-/// in front of it. No extra path is traced to compute the transmittance.
+/// in front of it, and the light of the lamp then does not depend on the random number. No extra
+/// path is traced to compute the transmittance.
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path);
 

@@ -19,7 +19,7 @@ struct PhotonSources {
   /// Set if indirect light comes from maps (indirect_photons.h): all surfaces that can scatter it,
   /// except casters.
   std::optional<SurfaceSampler> surfaces = std::nullopt;
-  /// Openings through which the background is sampled where indirect photons start.
+  /// Openings through which the background is sampled at the points where indirect photons start.
   Portals portals = {};
   std::uint32_t max_depth = 0;  ///< maximum number of scatterings of a path
 };
