@@ -1,4 +1,5 @@
-// Writes the glTF as text; its only buffer, a cube, is embedded as base64.
+// Builds the glTF text of a pergola, a scene of the gallery. All parts are copies of one cube, and
+// the cube's bytes are embedded as base64.
 
 #include "renderlib/gallery/pergola.h"
 
@@ -16,7 +17,7 @@
 namespace bandsaw::gallery {
 namespace {
 
-enum Mesh : int { kStone, kWood, kWater };  // each is the cube with another material
+enum Mesh : int { kStone, kWood, kWater };  // each is the same cube with its own material
 
 /// Returns the cube [-1/2, 1/2]^3: 24 positions, 24 normals, 36 indices of 16 bits.
 std::string cube_bytes() {
@@ -94,7 +95,8 @@ std::vector<std::string> nodes() {
   return nodes;
 }
 
-// Buffer views: positions, normals, indices, in the order of cube_bytes().
+// The meshes in the order of Mesh. Their buffer views are the positions, the normals and the
+// indices, in the order of cube_bytes().
 constexpr char kCube[] = R"("meshes": [
   {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 0}]},
   {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 1}]},
@@ -107,7 +109,7 @@ constexpr char kCube[] = R"("meshes": [
   {"buffer": 0, "byteLength": 288}, {"buffer": 0, "byteOffset": 288, "byteLength": 288}, {"buffer": 0, "byteOffset": 576, "byteLength": 72}],
 )";
 
-// Cameras, in the order of the numbers that nodes() uses, and the materials of kCube.
+// The cameras 0 and 1 that nodes() places, and the materials 0 to 2 that the meshes of kCube have.
 constexpr char kCamerasAndMaterials[] = R"("cameras": [
   {"name": "walker", "type": "perspective", "perspective": {"yfov": 0.72, "znear": 0.1}},
   {"name": "map", "type": "orthographic", "orthographic": {"xmag": 7.8, "ymag": 5.2, "znear": 0.1, "zfar": 50}}],

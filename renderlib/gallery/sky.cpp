@@ -63,7 +63,7 @@ Vec3 direction(double azimuth_degrees, double height_degrees) {
 
 /// Returns the amount of cloud in a direction above the horizon, in [0, 0.85]. It is the turbulence
 /// at the point where the direction meets a layer of clouds, which are stretched along x. `from` is
-/// subtracted, so a larger value leaves less cloud.
+/// subtracted from the turbulence: the larger `from`, the less cloud.
 float cover(const Vec3& unit, double from) {
   const double layer = 1 / (unit.y + 0.12);
   const double cloud =
@@ -79,7 +79,7 @@ Image equirectangular(Rgb (*sky)(const Vec3&), std::uint32_t rows) {
 }  // namespace
 
 Rgb evening_sky(const Vec3& unit) {
-  const double towards = dot(unit, direction(kSunAzimuth, 25));
+  const double towards = dot(unit, direction(kSunAzimuth, 25));  // cosine of the angle to the sun
   if (towards > sincos_degrees(3).cos) {
     return {300, 225, 140};
   }

@@ -20,10 +20,10 @@ std::string vase() {
       {{3.2, 0}, {5.4, 5}, {6.6, 11}, {4.2, 18}, {2.3, 22}, {3.6, 26}}};
   constexpr std::array<Vec2, 5> kInside = {{{3.3, 26}, {2.0, 22}, {3.9, 18}, {5.0, 8}, {0, 1.5}}};
   std::vector<Vec2> profile = {{0, 0}};
-  for (const Vec2& point : smooth_profile(kOutside, 4)) {
+  for (const Vec2& point : smooth_profile(kOutside, /*steps=*/4)) {
     profile.push_back(point);
   }
-  for (const Vec2& point : smooth_profile(kInside, 3)) {
+  for (const Vec2& point : smooth_profile(kInside, /*steps=*/3)) {
     profile.push_back(point);
   }
   return lathe_obj(profile, kAround);
@@ -44,7 +44,7 @@ std::string pawn() {
                                               {0.3, 5.92},
                                               {0, 5.97}}};
   std::vector<Vec2> profile = {{0, 0}, {1.75, 0}};
-  for (const Vec2& point : smooth_profile(kProfile, 2)) {
+  for (const Vec2& point : smooth_profile(kProfile, /*steps=*/2)) {
     profile.push_back(point);
   }
   return lathe_obj(profile, kAround);

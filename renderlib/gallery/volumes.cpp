@@ -28,7 +28,9 @@ void append(std::string& bytes, const T& value) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// Returns a *.vol file of the function's values at the centres of cells, each clamped to [0, 1].
+/// Returns the content of a *.vol file with one number for each cell of a grid that fills `box`:
+/// `value` at the centre of the cell, clamped to [0, 1]. `cells` is the number of cells along x, y
+/// and z.
 std::string vol_file(const std::array<std::int32_t, 3>& cells, const Box& box,
                      const std::function<double(const Vec3&)>& value) {
   std::string bytes = "VOL\3";     // version 3

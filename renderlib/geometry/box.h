@@ -25,9 +25,9 @@ struct Box {
 /// This tolerance is far above the rounding error of the primitive tests and far below the
 /// tolerance of a BVH's boxes.
 ///
-/// Every primitive test calls this function. Without it, hits whose t is mostly rounding error (on
-/// a triangle seen edge-on) could lie outside the boxes of a BVH, and it would depend on the tree
-/// whether they are found.
+/// Every primitive test calls this function. Without the function, a hit whose t is mostly rounding
+/// error (on a triangle seen edge-on) could lie outside the boxes of a BVH, and the tree would
+/// decide whether the hit is found.
 inline bool clip_to_box(const TracedRay& ray, const double (&lo)[3], const double (&hi)[3],
                         double& t) {
   constexpr double kGrow = 1 + 0x1p-40;

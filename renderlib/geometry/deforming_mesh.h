@@ -15,7 +15,8 @@
 
 namespace bandsaw {
 
-/// A time within the shutter interval, prepared for the interpolation of numbers between its ends.
+/// A time within the shutter interval, prepared for the interpolation of numbers between the
+/// beginning and the end of the interval.
 struct ShutterTime {
   /// A time outside the interval counts as its nearest end. If the interval is one instant, `share`
   /// is 0.
@@ -27,8 +28,8 @@ struct ShutterTime {
   }
 
   /// Interpolates linearly between two numbers. A part of the change is added to the number at the
-  /// nearer end, and the sum is rounded once. So the result is exact at both ends, never outside of
-  /// the range between the two numbers, and constant if the numbers are equal.
+  /// end that is nearer in time, and the sum is rounded once. So the result is exact at both ends,
+  /// never outside of the range between the two numbers, and constant if the numbers are equal.
   float between(float at_open, float at_close) const {
     return fused(at_close - at_open, factor, from_close ? at_close : at_open);
   }

@@ -25,8 +25,8 @@ DiskAxes axes_of(const Disk& disk) {
 
 Box bounds(const Disk& disk) {
   const double margin = kMargin * (disk.radius + max_abs(disk.center));
-  // Along x the disk extends to radius sqrt(1 - n.x^2) = radius sqrt(n.y^2 + n.z^2). The second
-  // form does not cancel if the normal is almost along x.
+  // Along x the disk extends from its centre by radius * sqrt(1 - n.x^2), which is equal to
+  // radius * sqrt(n.y^2 + n.z^2). The second form does not cancel if the normal is almost along x.
   const auto reach = [&](double a, double b) {
     return disk.radius * std::sqrt(a * a + b * b) + margin;
   };

@@ -1,6 +1,7 @@
 #pragma once
 
-// Flat disks: axes, bounds and the intersection test in double (as intersect.h for other shapes).
+// Flat disks: axes, bounds and the intersection test in double. The tests of other shapes are in
+// intersect.h.
 
 #include "renderlib/geometry/intersect.h"
 

@@ -6,7 +6,7 @@
 // Between two keys, translation and scale are interpolated linearly and the rotation along the
 // shortest arc at constant speed (Shoemake 1985, "Animating Rotation with Quaternion Curves",
 // section 3.3). At a key, the frame has exactly the key's transform. Before the first key it has
-// the transform of the first key, and after the last key that of the last key.
+// the first key's transform, and after the last key it has the last key's transform.
 
 #include <optional>
 #include <vector>

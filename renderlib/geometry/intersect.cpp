@@ -57,7 +57,7 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
   const bool hit_second = intersect_sheared(ray, corner, opposite, to_v, at_corner, at_opposite,
                                             sheared(ray, to_v), second);
   // On the diagonal both triangles are hit. The nearer hit is used, or that of the first triangle
-  // if t is equal.
+  // if t is equal. The opposite corner has u = v = 1, so its weight counts for both coordinates.
   if (hit_first && (!hit_second || first.t <= second.t)) {
     crossing = {first.t, std::min(1.0, first.u + first.v), first.v};
     return true;

@@ -14,7 +14,9 @@
 
 namespace bandsaw {
 
-/// An intersection: t in (0, t_max), and the members of Hit (geometry/ray.h) with the same names.
+/// An intersection at the distance t in (0, t_max). u and v give the position on the primitive, for
+/// example the barycentric weights of the corners b and c of a triangle. All members are those of
+/// Hit (geometry/ray.h).
 struct Crossing {
   double t;
   double u;
@@ -55,10 +57,10 @@ template <class Point>
 }
 
 /// Intersects a triangle, from both sides and including its edges: a ray through an edge that
-/// triangles share hits at least one of them (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
-/// Intersection", JCGT 2(1)). `a`, `b` and `c` are the corners in the triangle's space; `at_a`,
-/// `at_b` and `at_c` are the same corners in the ray's space. Returns true and sets `crossing`,
-/// except its `corners`, if the triangle is hit.
+/// triangles share hits at least one of these triangles (Woop, Benthin, Wald 2013, "Watertight
+/// Ray/Triangle Intersection", JCGT 2(1)). `a`, `b` and `c` are the corners in the triangle's
+/// space; `at_a`, `at_b` and `at_c` are the same corners in the ray's space. Returns true and sets
+/// `crossing`, except its `corners`, if the triangle is hit.
 template <class Point>
 [[gnu::always_inline]] inline bool intersect_sheared(const TracedRay& ray, const Point& a,
                                                      const Point& b, const Point& c,
@@ -99,9 +101,9 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
                            crossing);
 }
 
-/// These functions return the box to which hits are confined (clip_to_box). The boxes of a BVH must
-/// contain it. The box of a sphere is larger than the sphere by more than the rounding of center
-/// and radius.
+/// These functions return the box of a primitive, to which hits are confined (clip_to_box). A box
+/// of a BVH must contain the boxes of all primitives in it. The box of a sphere is larger than the
+/// sphere by more than the rounding of center and radius.
 Box bounds(const Sphere& sphere);
 Box bounds(const Quad& quad);
 Box bounds(const Triangle& triangle);

@@ -16,9 +16,9 @@ struct Mesh {
   std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
   std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
   std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
-  /// Empty unless the mesh deforms during the shutter interval (geometry/deforming_mesh.h). Then
-  /// these are the vertex positions at the end of the interval, one for each element of
-  /// `positions`, which are the vertex positions at its beginning.
+  /// Vertex positions at the end of the shutter interval, if the mesh deforms during the interval
+  /// (geometry/deforming_mesh.h); otherwise empty. `positions` holds the positions at the beginning
+  /// of the interval, in the same order.
   std::vector<std::array<float, 3>> positions_at_close = {};
   /// Normals at the end of the shutter interval, one per position. If empty, the normals do not
   /// change.

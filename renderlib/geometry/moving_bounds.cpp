@@ -112,7 +112,7 @@ std::vector<double> times_of_keys(const Geometry& geometry, const Instance& inst
   return times;
 }
 
-/// Collects the boxes of an instance at sampled times, each enlarged by `margin`.
+/// Collects the boxes of an instance at sampled times. Each box is enlarged by a margin.
 class SampledBoxes {
  public:
   SampledBoxes(const Geometry& geometry, const Instance& instance, const Box& box)

@@ -40,7 +40,8 @@ inline std::size_t primitives_of(const Geometry& geometry, const Instance& insta
                           : geometry.meshes[index_of(instance.mesh)].triangles.size();
 }
 
-/// Returns the material of a primitive of the instance.
+/// Returns the material of a primitive of the instance. With kOwnMaterial, an instance keeps the
+/// materials of the shapes of its group; otherwise all its primitives have the instance's material.
 inline MaterialId material_of(const Geometry& geometry, const Instance& instance,
                               std::size_t primitive) {
   const bool own = instance.group != kNoGroup && instance.material == kOwnMaterial;

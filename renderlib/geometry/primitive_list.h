@@ -13,8 +13,8 @@ namespace bandsaw {
 
 /// The primitives whose material belongs to a set, in the order of their ids: first the loose
 /// shapes (of no instance), then the primitives of each instance. The instances of a group share
-/// the list of the group's primitives. So time and memory grow with the sum of the numbers of
-/// instances and of stored primitives, and not with their product.
+/// the list of the group's primitives. So time and memory grow with the number of instances plus
+/// the number of stored primitives, and not with the product of these two numbers.
 class PrimitiveList {
  public:
   /// `wanted`: for each material, whether its primitives belong to the list.
@@ -33,11 +33,11 @@ class PrimitiveList {
     const std::vector<std::uint32_t>* chosen = nullptr;  ///< their numbers; null: all
     std::uint64_t up_to = 0;  ///< number of primitives of this part and all parts before it
   };
-  /// Adds a part with this number of primitives, unless that is 0.
+  /// Adds a part with `primitives` primitives, or nothing if `primitives` is 0.
   void add(std::uint32_t instance, const std::vector<std::uint32_t>* chosen,
            std::uint64_t primitives);
 
-  std::vector<Part> parts_;  ///< those that have primitives
+  std::vector<Part> parts_;  ///< only parts with at least one primitive
   /// Numbers of the wanted primitives of a group, if an instance keeps the materials of the group's
   /// shapes. The entry of kNoGroup is for the loose shapes.
   std::map<GroupId, std::vector<std::uint32_t>> chosen_;

@@ -26,8 +26,8 @@ struct Ray {
   Vec3 origin;
   Vec3 direction;
   double t_max = kInfinity;  ///< hits satisfy 0 < t < t_max
-  /// The primitive on which the ray starts. A flat primitive is not hit again; for a sphere, the
-  /// near root is ignored.
+  /// The primitive on which the ray starts. A flat primitive is not hit again. On a sphere, the
+  /// intersection with the smaller t is not a hit.
   PrimitiveId from = kNoPrimitive;
   double time = 0;  ///< moving instances are placed at this time
 };

@@ -25,10 +25,13 @@ constexpr double kMaxPlainCondition = 0x1p8;
 /// Above that condition number, this share of kOffset suffices in the primitive's own space.
 constexpr double kSquashedShare = 0x1p-5;
 
+/// Returns the Frobenius norm of the matrix with the rows `m`.
 double norm(const std::array<Vec3, 3>& m) {
   return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
 }
 
+/// Returns the surface at a hit on a sphere, in the sphere's space. If `with_uv` is false, uv and
+/// uv2 are zero.
 SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, bool with_uv) {
   const Vec3 outward = (ray.origin - sphere.center) + ray.direction * hit.t;
   SurfacePoint p;
@@ -62,6 +65,7 @@ SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* 
   return p;
 }
 
+/// Returns the surface at a hit on a disk, in the disk's space.
 SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
   const DiskAxes axes = axes_of(disk);
   SurfacePoint p;

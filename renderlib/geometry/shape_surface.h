@@ -14,9 +14,9 @@ namespace bandsaw {
 
 /// Returns true if `v` has a direction: it is neither zero nor infinite nor NaN.
 inline bool has_direction(const Vec3& v) { return max_abs(v) > 0 && is_finite(v); }
-/// Returns `v` times a power of two, exactly, so that its longest component is in [1, 4). If
-/// the longest component of `v` is below 2^-1023, that of the result is below 1. Zero and infinity
-/// stay zero and infinity.
+/// Returns `v` times a power of two, without rounding. The largest component of the result is in
+/// [1, 4), or below 1 if the largest component of `v` is below 2^-1023. Zero and infinity stay zero
+/// and infinity.
 inline Vec3 near_one(const Vec3& v) {
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(max_abs(v)) >> 52;
   return v * std::bit_cast<double>((2046 - std::min<std::uint64_t>(exponent, 2045)) << 52);
@@ -58,8 +58,9 @@ struct Placement {
     const Vec3 c = {dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
     return determinant < 0 ? -c : c;
   }
-  /// Sets `squashed` and `offset` of `placed`, and also `away` if the placement squashes. The
-  /// position of `placed` MUST be set. `local` is the same surface before the placement.
+  /// Sets the members of `placed` that keep the origins of rays off the surface: `squashed`,
+  /// `offset`, and also `away` if the placement squashes. The position of `placed` MUST be set.
+  /// `local` is the same surface before the placement.
   void set_offset(const SurfacePoint& local, SurfacePoint& placed) const;
 
   std::array<Vec3, 3> rows;       ///< of M
@@ -75,7 +76,8 @@ struct Placement {
 /// false, the uvs of spheres are zero, as in surface_at().
 SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv);
 
-/// Returns the surface `local`, which is in the primitive's own space, in world space.
+/// Returns the surface `local`, transformed from the primitive's own space to world space.
+/// `world_ray` is the ray that hit the surface.
 SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray);
 
 }  // namespace bandsaw

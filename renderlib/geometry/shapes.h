@@ -103,15 +103,16 @@ inline constexpr MaterialId kOwnMaterial{0xffffffffu};
 struct Instance {
   MeshId mesh{};  ///< unspecified if there is a group
   MaterialId material{};
-  /// Leads to the world, or to `frame` if there is one; invertible (math/transform.h).
+  /// Transform from the space of the mesh or group to `frame`, or to the world if there is no
+  /// frame; invertible (math/transform.h).
   Transform to_world;
   GroupId group = kNoGroup;
   FrameId frame = kNoFrame;  ///< the frame it moves with (geometry/frame.h)
 };
 
-/// All geometry that can be hit. In a hit, `instance` 0 means the geometry's own loose shapes;
-/// `instance` i + 1 means instances[i], whose `primitive` is the triangle of its mesh or the shape
-/// of its group.
+/// All geometry that can be hit. In a hit, `instance` 0 means the geometry's own loose shapes, and
+/// `instance` i + 1 means instances[i]. `primitive` is then the number of a triangle in the
+/// instance's mesh or of a shape in the instance's group.
 struct Geometry : Shapes {
   MeshList meshes;
   std::vector<Instance> instances;

@@ -1,5 +1,5 @@
-// The formulas of sphere_uv.h. Clamping keeps the results in range where u wraps around and at the
-// poles.
+// Computes u and v of a direction from two angles. Clamping keeps the results in range where u
+// wraps around and at the poles.
 
 #include "renderlib/geometry/sphere_uv.h"
 

@@ -1,5 +1,5 @@
-// Finds the primitive of a hit, computes its surface in its own space (shape_surface.h for loose
-// shapes, here for meshes), and places it in the world.
+// Computes the surface at a hit, first in the primitive's own space and then in the world. For
+// meshes the first step is in this file, for loose shapes in shape_surface.h.
 
 #include "renderlib/geometry/surface.h"
 
@@ -89,6 +89,7 @@ SurfacePoint on_triangle(const Mesh& mesh, const Interval& shutter, const Ray& r
   return p;
 }
 
+/// Returns the surface at a hit of an instance of a mesh, in world space.
 SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const Instance& instance = geometry.instances[hit.id.instance - 1];
   SurfacePoint p =
@@ -101,6 +102,7 @@ SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   return p;
 }
 
+/// Returns the surface at a hit of an instance of a group of shapes, in world space.
 SurfacePoint on_group(const Geometry& geometry, const Ray& ray, const Hit& hit, bool sphere_uv) {
   const Instance& instance = geometry.instances[hit.id.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, ray.time);

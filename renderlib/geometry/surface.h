@@ -14,7 +14,7 @@ struct SurfacePoint {
   Vec3 geometric_normal;  ///< unit; points to the outside as geometry/shapes.h defines it (also in
                           ///< mirrored instances)
   Vec3 shading_normal;    ///< unit; interpolated if the mesh has normals, otherwise the geometric
-                          ///< one; in the same hemisphere
+                          ///< one; always in the hemisphere of the geometric one
   /// Spheres: as sphere_uv() (geometry/sphere_uv.h), i.e. u is 1/2 at +x and 3/4 at -z, and v is 0
   /// at the pole -y. Quads: the coordinates along their edges. Disks: the square around them, [0,
   /// 1]^2. Triangles: the weights of corners b and c. Meshes: their own uv; the weights if they
@@ -35,8 +35,8 @@ struct SurfacePoint {
   bool squashed = false;
   /// Distance along the normal at which ray origins are certainly off the surface. It is 2^-40 of
   /// the largest number from which the position was computed, in the world or in the primitive's
-  /// own space (README.md, "Squashed space"). If an instance squashes space, it also depends on how
-  /// much the instance squashes along this normal.
+  /// own space (README.md, "Squashed space"). If an instance squashes space, the distance also
+  /// depends on how much the instance squashes along this normal.
   double offset = 0;
   /// Vector from the position to the origin of rays that leave outwards. Rays that leave inwards
   /// start at the position minus this vector. It is geometric_normal times `offset`, except if an
@@ -93,7 +93,7 @@ inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_m
 Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset);
 
 /// Returns a shadow ray to another surface. The ray ends beside that surface, on the side that
-/// faces `from`, so that the surface never occludes it, even if seen edge-on.
+/// faces `from`, so that the surface never occludes the ray, even if the surface is seen edge-on.
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target);
 
 /// Returns SurfacePoint::offset of a point at `position` on a primitive of no instance. `size` is

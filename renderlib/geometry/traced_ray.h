@@ -15,8 +15,8 @@ struct TracedRay {
   std::array<double, 3> direction;
   std::array<double, 3> inverse;  ///< 1 / direction; infinite where the direction is 0
   double t_max;
-  /// kz is the axis along which the direction is longest; (kx, ky, kz) is right-handed as seen
-  /// along the ray.
+  /// kz is the axis along which the direction is longest. kx and ky are the next two axes in cyclic
+  /// order, swapped if direction[kz] is negative. So the winding of triangles is preserved.
   int kx;
   int ky;
   int kz;

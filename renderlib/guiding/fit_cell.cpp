@@ -72,8 +72,9 @@ struct Place {
   double irradiance_of_one = 0;
 };
 
-/// Returns the area on which the records lie, as if it were a plane: the product of their extents
-/// in the two directions across the main direction of the normal.
+/// Returns the area of the surface on which the records lie, as if the surface were flat. It is the
+/// product of the records' extents along the two axes across the main axis of the normal. Because
+/// the surface may be tilted, the product is divided by the normal's component along that axis.
 double area_of(absl::Span<const GuidingRecord> records, const Vec3& normal) {
   const std::uint32_t across = side_of(normal) / 2;
   double area = 1 / std::abs(normal[static_cast<int>(across)]);
@@ -201,7 +202,8 @@ double score(const Cluster& cluster) {
   return cluster.weight * log(cluster.weight / cluster.one_minus_cos);
 }
 
-/// Moves the directions below `at` to the front and returns where the others begin. Stable.
+/// Moves the cluster's directions whose component `axis` is below `at` to the front. Keeps the
+/// order within both parts, and returns the number of the first direction of the second part.
 std::size_t partition(absl::Span<Seen> seen, const Cluster& cluster, int axis, double at) {
   const auto begin = seen.begin();
   const auto middle =
@@ -311,10 +313,11 @@ std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Se
   return out;
 }
 
-/// Returns the expected second moment of light over pdf, in units of the squared mean, where the
-/// clusters are sampled with probability `share`, otherwise the cosine. The density of the light is
-/// assumed to be the greater of the densities of the clusters and of the cosine. So a larger
-/// `share` raises the result for directions that no cluster covers, because they get fewer samples.
+/// Returns the expected second moment of the estimate "light of a sampled direction / pdf", in
+/// units of the squared mean. Directions are sampled from the clusters with the probability
+/// `share`, and otherwise by the cosine. The light of a direction is assumed to be proportional to
+/// the greater of the two pdfs in Densities. A larger `share` raises the result for directions that
+/// no cluster covers, because such directions get fewer samples.
 double second_moment(absl::Span<const Densities> densities, double share) {
   double sum = 0;
   for (const Densities& at : densities) {
@@ -324,7 +327,7 @@ double second_moment(absl::Span<const Densities> densities, double share) {
   return sum;
 }
 
-/// Returns the share with the least second moment, which may be 0.
+/// Returns the share of kShares that has the least second moment, or 0 if no share lowers it.
 double best_share(absl::Span<const Densities> densities) {
   double best = 0;
   double least = second_moment(densities, 0);

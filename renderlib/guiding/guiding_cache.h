@@ -1,7 +1,8 @@
 #pragma once
 
-// Keeps the guiding fields of a scene (guiding_field.h) and its photon maps (photon_map.h), each of
-// which is made when it is first used. Each Scene has one GuidingCache.
+// Keeps the guiding fields (the directions from which light arrives, guiding_field.h) and the
+// photon maps (photon_map.h) of a scene. A field or map is made when it is first used. Each Scene
+// has one GuidingCache.
 
 #include <cstdint>
 #include <deque>
@@ -64,7 +65,7 @@ struct TracedMaps {
   /// receiver is at least this distance. If `indirect` is empty, the distance is 0 and not used.
   double gather_distance = 0;
   /// Effective number of the points at which the photons of `indirect` start: the squared sum of
-  /// their powers over the sum of the squares (Kish 1965, "Survey Sampling").
+  /// the points' powers over the sum of the squared powers (Kish 1965, "Survey Sampling").
   double effective_origins = 0;
   /// Mean solid angle of the lamps in steradians, weighted by power, as seen from the points where
   /// photons of caustics start.
@@ -84,7 +85,7 @@ class GuidingCache {
   /// threads that call a function of this object wait meanwhile. If `make` returns nullptr (it was
   /// stopped), returns nullptr and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
-  /// Forgets all fields and maps, so that the next image makes its own. For measurements.
+  /// Forgets all fields and maps, so that the next image makes new ones. Used for measurements.
   void clear() EXCLUDES(mutex_);
   /// Does the same as get() for the photon maps of `key`.
   Maps get_maps(const PhotonMapKey& key, absl::FunctionRef<Maps()> make) EXCLUDES(mutex_);

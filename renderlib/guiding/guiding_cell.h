@@ -38,7 +38,7 @@ struct GuidingCell {
   /// Expected second moment of a sampled direction's contribution at a diffuse surface without
   /// guiding, in units of the squared mean. Estimated from light that was left out of the fit.
   float moment = 1;
-  float guided_moment = 1;  ///< the same with guiding by `share`
+  float guided_moment = 1;  ///< the expected second moment with guiding by `share`
   std::array<GuidingBall, kMaxBalls> balls;
 };
 
@@ -96,7 +96,7 @@ class GuidingCones {
   double y_[kMaxCones];
   double z_[kMaxCones];
   double one_minus_cos_[kMaxCones];  ///< 1 - cos of the half-angle
-  double weight_[kMaxCones];         ///< probability of the cone; they sum to 1
+  double weight_[kMaxCones];         ///< probability of the cone; the weights sum to 1
   double density_[kMaxCones];        ///< weight by solid angle
 };
 

@@ -24,10 +24,11 @@ constexpr double kNarrowest = 4e-6;
 GuidingShares shares_of(const GuidingCells& cells) {
   // Weak light can still be noisy: if its source is small, it is rarely sampled, and then the
   // sample is bright. GuidingCell::moment shows this noise: it is the second moment of the cell's
-  // light, sampled without guiding, in units of the squared mean of this light. `part` is the
-  // photons' part of all light, which is the irradiance of both cells. In units of the squared mean
-  // of all light, the second moment of the photons' light is therefore part^2 * moment. If it is at
-  // most kMinMoment, the noise is not noticed, and no directions are sampled from this cell.
+  // light, sampled without guiding, in units of the squared mean of this light. All light is the
+  // sum of the irradiances of both cells, and `part` is the photons' part of this sum. In units of
+  // the squared mean of all light, the second moment of the photons' light is therefore
+  // part^2 * moment. If that is at most kMinMoment, the noise is not noticed, and no directions are
+  // sampled from the cell of photons.
   constexpr double kMinMoment = 0.001;
   constexpr double kMinShare = 0.125;
   constexpr double kMaxShare = 0.5;

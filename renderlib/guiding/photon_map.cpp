@@ -133,7 +133,8 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   Place place{.first = first, .last = last, .area = area, .normal = {}};
   // Few photons, or photons at one point, do not show an area. Their place keeps the parent's area.
   if (own.size() >= kEnoughPhotons && area_of(box) > 0) {
-    // The outermost photons lie on the sides of the box, so it holds about one photon less.
+    // The outermost photons lie on the sides of the box. So the box has the area of one photon less
+    // than it contains.
     place.area = area_of(box) / static_cast<double>(own.size() - 1);
   }
   const std::size_t number = places.size();
@@ -165,9 +166,9 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   places[number] = place;
 }
 
-/// Returns one of the photons with the power of all of them. It is chosen with a probability in
-/// proportion to its power. It can replace all of them where they are close together compared with
-/// their disks.
+/// Returns one of the photons, chosen with a probability in proportion to its power. The chosen
+/// photon gets the power of the whole group. It can replace the group where the photons are close
+/// together compared with their disks.
 StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed) {
   double total = 0;
   for (const StoredPhoton& photon : photons) {

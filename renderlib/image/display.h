@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// The tone curve of 8-bit files. The numbers of the values are those of package.proto.
+/// The tone curve of 8-bit files. The numeric values are those of package.proto.
 enum class Tone {
   kNone = 0,  ///< no curve: radiance above 1 is clamped
   /// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel: a fit of the ACES film curve
@@ -33,9 +33,10 @@ struct Display {
   friend bool operator==(const Display&, const Display&) = default;
 };
 
-/// Returns the radiance that an 8-bit file shows, before its transfer function: 2^exposure * light,
-/// then the tone curve. With the default settings it is exactly `light`. Monotonic in every
-/// channel; infinite radiance becomes white, NaN stays NaN.
+/// Applies the settings of 8-bit files to `light`: multiplies it by 2^exposure and then applies the
+/// tone curve. The result is linear; the sRGB curve is not yet applied. With the default settings
+/// it is exactly `light`. The result is monotonic in every channel. Infinite radiance becomes white
+/// in the file, and NaN stays NaN.
 Rgb shown(const Rgb& light, const Display& display);
 
 }  // namespace bandsaw

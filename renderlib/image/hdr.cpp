@@ -69,7 +69,7 @@ class RowWriter {
   }
 
  private:
-  /// Writes values [from, to) of channel c as they are.
+  /// Writes values [from, to) of channel c without runs, as (length, values).
   void literal(const std::vector<Rgbe>& row, std::size_t c, std::size_t from, std::size_t to) {
     while (from < to) {
       const std::size_t count = std::min<std::size_t>(to - from, 128);

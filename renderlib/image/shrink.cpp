@@ -7,6 +7,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the mean of the pixels in columns [left, right) and rows [top, bottom).
 Rgb mean(const Image& image, std::uint32_t left, std::uint32_t top, std::uint32_t right,
          std::uint32_t bottom) {
   double r = 0;

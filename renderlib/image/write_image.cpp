@@ -19,6 +19,8 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the 8-bit sRGB codes (red, green, blue) of all pixels, with the display settings
+/// applied.
 std::vector<std::uint8_t> srgb_codes(const Image& image, const Display& display) {
   std::vector<std::uint8_t> codes;
   codes.reserve(image.pixels.size() * 3);
@@ -48,6 +50,7 @@ std::vector<std::byte> encode_ppm(const Image& image, const Display& display) {
   return bytes;
 }
 
+/// Returns a PFM file, whose rows go from the bottom to the top.
 std::vector<std::byte> encode_pfm(const Image& image) {
   static_assert(std::endian::native == std::endian::little && sizeof(Rgb) == 12,
                 "pixels are written as they lie in memory");
@@ -88,8 +91,9 @@ absl::StatusOr<std::vector<std::byte>> encode_image(const Image& image, ImageFor
                                                     const Display& display, const Layers& layers) {
   if (image.width == 0 || image.height == 0 ||
       image.pixels.size() != std::size_t{image.width} * image.height) {
-    return absl::InvalidArgumentError(absl::StrCat("an image of ", image.width, " x ", image.height,
-                                                   " has ", image.pixels.size(), " pixels"));
+    return absl::InvalidArgumentError(absl::StrCat("cannot encode an image of ", image.width, " x ",
+                                                   image.height, " from ", image.pixels.size(),
+                                                   " pixels"));
   }
   switch (format) {
     case ImageFormat::kPng:

@@ -16,7 +16,7 @@
 namespace bandsaw {
 
 enum class ImageFormat {
-  kPng,  ///< 8-bit, with the display settings applied, sRGB (IEC 61966-2-1), clamped, round(255 x)
+  kPng,  ///< 8-bit sRGB codes (IEC 61966-2-1), clamped and rounded, after the display settings
   kPpm,  ///< binary PPM (P6) with the values of kPng
   kPfm,  ///< exact: 32-bit little-endian float, linear, rows from the bottom
   kHdr,  ///< Radiance RGBE (image/hdr.h), linear

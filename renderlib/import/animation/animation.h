@@ -50,8 +50,9 @@ absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
 
 struct Animation {
   std::string name;
-  /// Moving nodes, keyed by their number in Assimp's tree, parents first. Until Assimp has loaded a
-  /// glTF file, the key is the node's index in that file.
+  /// Moving nodes, keyed by the node's number in Assimp's tree, where parents have lower numbers
+  /// than their children. Until Assimp has loaded a glTF file, the key is the node's index in that
+  /// file.
   std::map<std::size_t, NodeMotion> nodes = {};
   /// Weights of morph targets, keyed by node as in `nodes`. A curve has one number for each target.
   std::map<std::size_t, Curve> weights = {};
