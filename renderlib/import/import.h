@@ -1,8 +1,8 @@
 #pragma once
 
-// The interface of this folder: converts a scene file, a foreign scene or a model to the
-// description that is encoded as a scene package. Only the confined process bandsaw-import
-// (import/main.cpp) calls it, never the coordinator or a worker.
+// The interface of this folder: converts a scene file, a foreign scene (a scene of pbrt or Mitsuba)
+// or a model to the description that is encoded as a scene package. Only the confined process
+// bandsaw-import (import/main.cpp) calls it, never the coordinator or a worker.
 
 #include <map>
 #include <optional>
@@ -47,8 +47,9 @@ struct ImportChoices {
   std::string folder = {};
 };
 
-/// Returns the folder below which the import reads. Errors as SceneFolder::around; INVALID_ARGUMENT
-/// also if `choices.folder` is set and `path` is not a scene of Mitsuba.
+/// Returns the folder below which the import reads. The errors are those of SceneFolder::around().
+/// The error is also INVALID_ARGUMENT if `choices.folder` is set and `path` is not a scene of
+/// Mitsuba.
 absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const ImportChoices& choices);
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
@@ -73,9 +74,9 @@ struct SceneAsText {
 };
 
 /// Converts a scene of pbrt-v4 or Mitsuba, or a single model, to a scene file of Bandsaw. The
-/// result is read as import_scene() reads it, so that the text is known to be valid; errors as
-/// import_scene(). Ignores `environment` and `camera` of the choices. Returns INVALID_ARGUMENT also
-/// if `path` is a scene file of Bandsaw already.
+/// result is read as import_scene() reads it, so that the text is known to be valid. Ignores
+/// `environment` and `camera` of the choices. Returns the errors of import_scene(), and
+/// INVALID_ARGUMENT also if `path` is a scene file of Bandsaw already.
 absl::StatusOr<SceneAsText> scene_as_text(const std::string& path,
                                           const ImportChoices& choices = {});
 

@@ -1,6 +1,7 @@
-// Imports one file as a scene. A scene file is parsed to proto/scene.proto, and a foreign scene is
-// converted to it; read_scene() reads either into a SceneDraft (draft/scene_draft.h). A single
-// model is read without a scene file (read_model_alone).
+// Imports one file as a scene. A scene file is parsed to the message of proto/scene.proto, and a
+// foreign scene (of pbrt or Mitsuba) is converted to this message. read_scene() reads the message
+// into a SceneDraft (draft/scene_draft.h). A single model is read without a scene file
+// (read_model_alone).
 
 #include <algorithm>
 #include <filesystem>
@@ -61,10 +62,10 @@ Camera framed(const ImportedScene& out, const Shutter& shutter) {
   return camera;
 }
 
-/// Returns the camera for a scene file without a camera of its own. This is the model's camera that
-/// the file names, otherwise the first camera of a model, otherwise a camera that frames the only
-/// model. If the animation of the only model hides it, returns the default camera. Returns an error
-/// if none of these cameras exists.
+/// Returns the camera for a scene file without a camera of its own. The first of these that exists
+/// is returned: the model's camera that the file names, the first camera of a model, and a camera
+/// that frames the only model. If an animation hides the only model, returns the default camera.
+/// Returns an error if none of these cameras exists.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -167,6 +168,7 @@ absl::Status read_frame(const scene::Scene& written,
   return absl::OkStatus();
 }
 
+/// Reads a scene file of Bandsaw, which is JSON if `json` is true, otherwise protobuf text format.
 absl::Status read_scene_file(const std::string& path, bool json, const ImportChoices& choices,
                              SceneDraft& draft) {
   ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMaxSceneFileBytes));

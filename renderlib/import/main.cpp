@@ -1,23 +1,25 @@
-// bandsaw-import reads one foreign file and writes it to a folder in a form that needs no parser.
-// The client commands and the dashboard start it (coordinator/cli/scene/import_process.h); it can
-// also be run by hand. FOLDER must exist. SECONDS and BYTES limit the CPU time and the memory. Each
-// of the following modes is explained below its command line.
+// bandsaw-import reads one file of unknown origin and writes its content to a folder in a form that
+// needs no parser. The client commands and the dashboard start this program
+// (coordinator/cli/scene/import_process.h); it can also be run by hand. FOLDER must exist. SECONDS
+// and BYTES limit the CPU time and the memory. Each of the following modes is explained below its
+// command line.
 //
 //   bandsaw-import scene FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
-// This mode imports a scene. It writes FOLDER/manifest, and FOLDER/<digest> for each blob. The
-// choices (import.h, ImportChoices) are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a
-// parameter of a Mitsuba scene), folder=OUTER (for a Mitsuba scene: files anywhere below OUTER,
-// which contains the scene's own folder, may be read), frame=N, fps=F, shutter=SHARE (fps and
-// shutter only after frame) and animation=NAME.
+// This mode imports a scene. It writes FOLDER/manifest, which describes the scene, and
+// FOLDER/<digest> for each blob, an array of the scene to which the manifest refers by its digest.
+// The choices (import.h, ImportChoices) are environment=FILE, camera=NAME, strict,
+// define:NAME=VALUE (a parameter of a Mitsuba scene), folder=OUTER (for a Mitsuba scene: files
+// anywhere below OUTER, which contains the scene's own folder, may be read), frame=N, fps=F,
+// shutter=SHARE (fps and shutter only after frame) and animation=NAME.
 //
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
 // This mode imports the frames of a scene, one after the other. It reads the numbers of the frames
 // from standard input, one a line. It answers each number with the line "done" when FOLDER has the
-// package of that frame, and of no other frame. Models, image textures and a foreign scene are kept
-// for the next frame; other files of the scene are read again. SECONDS is the CPU time for all
-// frames together. The choice frame=N must be given, but its N is not used.
+// package of that frame, and of no other frame. Models, image textures and a foreign scene (of
+// pbrt or Mitsuba) are kept for the next frame; other files of the scene are read again. SECONDS is
+// the CPU time for all frames together. The choice frame=N must be given, but its N is not used.
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //

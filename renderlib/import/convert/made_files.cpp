@@ -1,5 +1,5 @@
-// Stores and names the files that the converter of a foreign scene makes. Equal contents get one
-// name; a hash finds candidates, which are then compared.
+// Stores and names the files that the converter of another renderer's scene makes. Files with equal
+// contents get one name. A hash finds candidates, which are then compared.
 
 #include "renderlib/import/convert/made_files.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Collects the files that the converter of a foreign scene makes, meshes and images, and names
-// them.
+// Collects and names the files (meshes and images) that the converter of a foreign scene makes. A
+// foreign scene is a scene of another renderer.
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Triangle meshes as binary PLY, the form in which the converters of foreign scenes pass meshes to
-// the importer.
+// Triangle meshes as binary PLY. In this form the converters of other renderers' scenes pass meshes
+// to the importer.
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace bandsaw {
 
-/// Lists per vertex have the length of `positions` or are empty. v = 0 is the bottom row of an
-/// image.
+/// A mesh. Each list of numbers per vertex has the length of `positions` or is empty. v = 0 is the
+/// bottom row of an image.
 struct PlyMesh {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 3>> normals;

@@ -1,6 +1,6 @@
-// Reads PLY files for the converters of foreign scenes. The header becomes a list of elements and
-// their properties; then PlyReader reads the numbers of each row, text or binary, and sorts them
-// into positions, normals, uvs, faces and attributes.
+// Reads PLY files for the converters of other renderers' scenes. The header becomes a list of
+// elements and their properties; then PlyReader reads the numbers of each row, text or binary, and
+// sorts them into positions, normals, uvs, faces and attributes.
 
 #include "renderlib/import/convert/read_ply.h"
 
@@ -150,6 +150,7 @@ struct Header {
   absl::string_view body;  ///< the bytes after the header
 };
 
+/// Adds the property of a header line, given as its words, to the last element of the header.
 absl::Status add_property(const std::vector<absl::string_view>& words, Header& header) {
   if (header.elements.empty()) {
     return damaged("a property belongs to no element");
@@ -168,6 +169,7 @@ absl::Status add_property(const std::vector<absl::string_view>& words, Header& h
   return absl::OkStatus();
 }
 
+/// Reads a line that declares the encoding, an element or a property. Skips comments.
 absl::Status read_header_line(absl::string_view line, Header& header) {
   const std::vector<absl::string_view> words =
       absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
@@ -260,6 +262,7 @@ struct VertexColumns {
   Columns<2> uv;
 };
 
+/// Returns the columns of positions, normals and uvs in a row of the element of vertices.
 VertexColumns vertex_columns(const Element& element) {
   VertexColumns columns{
       columns_of<3>(element, {"x", "y", "z"}), columns_of<3>(element, {"nx", "ny", "nz"}), {}};
@@ -272,6 +275,8 @@ VertexColumns vertex_columns(const Element& element) {
   return columns;
 }
 
+/// Appends the numbers in `columns` of `row` to `to`, or nothing if there are no such columns.
+/// Returns INVALID_ARGUMENT if a number is not finite.
 template <std::size_t n>
 absl::Status add_numbers(const Columns<n>& columns, const std::vector<double>& row,
                          std::vector<std::array<float, n>>& to) {
@@ -324,6 +329,8 @@ class PlyReader {
   }
 
  private:
+  /// Reads all rows of an element. Adds vertices and faces, with their attributes, to the result.
+  /// Skips the rows of other elements.
   absl::Status read_element(const Element& element) {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";

@@ -12,8 +12,8 @@ namespace bandsaw {
 
 /// Makes a boundary, filled with the medium `inside`, from an instance of a mesh of the scene. Adds
 /// the mesh, with its normals outwards, to the meshes of Media::boundaries, unless it is already
-/// there. Returns an instance with the place of `placed`, which the caller adds to
-/// Media::boundaries. Returns std::nullopt if the mesh is not closed.
+/// there. Returns an instance of that mesh at the place of `placed`. The caller adds this instance
+/// to Media::boundaries. Returns std::nullopt if the mesh is not closed.
 std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -1,7 +1,8 @@
 #pragma once
 
-// Maximum values of a channel of a reflectance, a radiance, and a texture of heights. They apply to
-// scenes of all formats. Products of a few radiances or heights above these values would overflow.
+// The largest values that a channel of a reflectance, a channel of a radiance and a height in a
+// texture may have, in scenes of all formats. Products of a few radiances or heights above these
+// values would overflow.
 
 namespace bandsaw {
 

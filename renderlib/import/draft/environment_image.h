@@ -16,7 +16,8 @@ namespace bandsaw {
 std::size_t repair_light(ImageTexture& image);
 
 /// Adds the image of a file to the textures of the draft, the scene that is being read. Repaired
-/// numbers cause a warning. Errors as decode_image(). Warnings and errors begin with `name`.
+/// numbers cause a warning. The errors are those of decode_image(). Warnings and errors begin with
+/// `name`.
 absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const std::string& name,
                                                 SceneDraft& draft);
 

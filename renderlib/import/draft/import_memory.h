@@ -18,8 +18,9 @@ namespace bandsaw {
 struct ConvertedScene;  // import/convert/converted_scene.h
 struct LoadedModel;     // import/model/loaded_model.h
 
-/// Results of earlier imports. An object MUST be used for one scene only. All its imports MUST have
-/// equal ImportChoices (import.h) except for the frame, and the files MUST NOT change between them.
+/// Results of earlier imports. An object MUST be used for one scene only. All imports that use the
+/// object MUST have equal ImportChoices (import.h) except for the frame. The scene's files MUST NOT
+/// change between these imports.
 struct ImportMemory {
   /// Models, keyed by their real path and by the chosen animation.
   std::map<std::pair<std::string, AnimationChoice>, std::shared_ptr<LoadedModel>> models = {};

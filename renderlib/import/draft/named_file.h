@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds a file that a field of the scene names: first among the files that the converter of a
-// foreign scene made, then in the scene's folder.
+// Finds a file that a field of the scene names: first among the files that the converter of another
+// renderer's scene made, then in the scene's folder.
 
 #include <cstdint>
 #include <string>
@@ -20,8 +20,8 @@ struct NamedFile {
   absl::StatusOr<std::string> read(std::uint64_t max_bytes) const;
 };
 
-/// Finds a file. The errors are those of SceneFolder::resolve(): NOT_FOUND, INVALID_ARGUMENT or
-/// PERMISSION_DENIED.
+/// Finds the file to which a field refers by `name`. `draft` is the scene that is being read. The
+/// errors are those of SceneFolder::resolve(): NOT_FOUND, INVALID_ARGUMENT or PERMISSION_DENIED.
 absl::StatusOr<NamedFile> find_named_file(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

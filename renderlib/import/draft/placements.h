@@ -31,14 +31,15 @@ inline constexpr std::size_t kMaxPlacements = 500'000;
 
 /// Where an instance is in the space of a Placements.
 struct Place {
-  Transform to_frame;  ///< leads to `frame`, or to the space if `frame` is kNoFrame
+  /// Transform from the instance to `frame`, or to the space itself if `frame` is kNoFrame.
+  Transform to_frame;
   FrameId frame = kNoFrame;
 };
 
 /// Appends the frame and returns its index in `to`.
 FrameId add_frame(Frame frame, Placements& to);
 
-/// Copies all frames and instances of `what` to `to`, at the place `at` of the space of `to`. If
+/// Copies all frames and instances of `what` to `to`, at the place `at` in the space of `to`. If
 /// `material` is set, it replaces the materials of the copied instances. Returns false if the
 /// transform of a copied instance would be singular. Then only some of the instances have been
 /// added to `to`.

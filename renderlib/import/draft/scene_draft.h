@@ -23,11 +23,12 @@ struct Model;
 
 /// A camera of one of the scene's models, in world space.
 struct FoundCamera {
-  std::string model;                              ///< file of the model
-  std::string name;                               ///< name of its node
-  std::string own_name;                           ///< name of the camera itself; may be empty
-  Camera camera;                                  ///< when the shutter opens
-  std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
+  std::string model;     ///< file of the model
+  std::string name;      ///< name of its node
+  std::string own_name;  ///< name of the camera itself; may be empty
+  Camera camera;         ///< the camera when the shutter opens
+  /// The camera when the shutter closes; std::nullopt if the camera does not move.
+  std::optional<Camera> at_close = std::nullopt;
 };
 
 struct SceneDraft {
@@ -40,8 +41,8 @@ struct SceneDraft {
 
   SceneFolder folder;
   std::string file;  ///< name of the scene file in errors
-  /// Files that the converter of a foreign scene made, keyed by name. They are found before files
-  /// of the folder (named_file.h).
+  /// Files that the converter of a foreign scene (a scene of another renderer) made, keyed by name.
+  /// They are found before files of the folder (named_file.h).
   std::shared_ptr<const std::map<std::string, std::string>> made_files =
       std::make_shared<const std::map<std::string, std::string>>();
   ImportMemory* const memory;  ///< may be nullptr

@@ -116,7 +116,7 @@ std::vector<sock_filter> program() {
       statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       statement(kLoad, offsetof(seccomp_data, nr)),
       // On x86-64, call numbers from kX32 up are aliases of the same calls (x32 ABI). The
-      // comparisons with kForbidden would miss the aliases, so all of them fail. Other
+      // comparisons with kForbidden would miss the aliases, so every alias fails. Other
       // architectures have no such numbers.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
@@ -167,8 +167,8 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
-// Limits the resource to `most`, or to the inherited hard limit if it is lower, because only
-// privileged users may raise a hard limit. `what` begins the message of an error.
+// Limits the resource to `most`, or to the inherited hard limit if that limit is lower, because
+// only privileged users may raise a hard limit. `what` begins the message of an error.
 absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* what) {
   rlimit inherited{};
   if (getrlimit(resource, &inherited) != 0) {
@@ -225,6 +225,8 @@ absl::Status allow_folder(int rules, const std::string& folder, std::uint64_t ri
   return absl::OkStatus();
 }
 
+/// Makes all files outside of the two folders inaccessible by Landlock. Does nothing if the kernel
+/// has no Landlock.
 absl::Status confine_to_folders(const Confinement& to) {
   landlock_ruleset_attr attributes{};
   attributes.handled_access_fs = kHandled;

@@ -21,7 +21,9 @@ constexpr std::size_t kPiece = std::size_t{1} << 18;
 constexpr int kGzipOrZlib = 15 + 32;
 constexpr int kRaw = -15;
 
-/// Inflates one member from the front of the stream's input to the end of `out`.
+/// Inflates the member at the front of the stream's input and appends the bytes to `out`. Returns
+/// RESOURCE_EXHAUSTED if `out` then has more than `max_bytes`, and INVALID_ARGUMENT if the data are
+/// damaged.
 absl::Status inflate_member(z_stream& stream, std::uint64_t max_bytes, std::string& out) {
   int result = Z_OK;
   while (result != Z_STREAM_END) {

@@ -16,9 +16,9 @@ enum class DeflateKind {
 };
 
 /// Returns the decompressed bytes. The error is INVALID_ARGUMENT if the data are damaged or
-/// truncated, or if bytes follow their end (except for further members of a gzip file), and
-/// RESOURCE_EXHAUSTED for more than `max_bytes` of result or 4 GiB of compressed data. Messages
-/// have no file name.
+/// truncated, or if other bytes follow the data. (A gzip file may have several members, one after
+/// the other.) The error is RESOURCE_EXHAUSTED if the result has more than `max_bytes`, or if there
+/// are more than 4 GiB of compressed data. Messages have no file name.
 absl::StatusOr<std::string> inflate(absl::string_view bytes, DeflateKind kind,
                                     std::uint64_t max_bytes);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Decodes file names of models that are percent-encoded, as URIs are.
+// Decodes file names in percent-encoding, the encoding of the URIs by which models name files.
 
 #include <string>
 

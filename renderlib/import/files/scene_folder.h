@@ -1,7 +1,7 @@
 #pragma once
 
 // SceneFolder is the only folder that an import reads, together with the folders below it. It is
-// the folder of the scene file, or a folder above it that the user named.
+// the folder of the scene file, or a folder above the scene file's folder, if the user named one.
 
 #include <cstdint>
 #include <map>
@@ -17,8 +17,8 @@ class SceneFolder {
   /// PERMISSION_DENIED with the file's name, or INVALID_ARGUMENT if `scene_path` is a folder.
   static absl::StatusOr<SceneFolder> of(const std::string& scene_path);
 
-  /// Returns the folder `folder`, below which `scene_path` must be. Errors as `of`;
-  /// PERMISSION_DENIED if the scene is elsewhere.
+  /// Returns the folder `folder`, below which `scene_path` must be. The errors are those of of().
+  /// The error is also PERMISSION_DENIED if the scene does not lie below `folder`.
   static absl::StatusOr<SceneFolder> around(const std::string& scene_path,
                                             const std::string& folder);
 
@@ -31,9 +31,9 @@ class SceneFolder {
   /// the file. Returns NOT_FOUND if there is no such file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
-  /// As resolve(). If resolve() fails and `name` has no slash, searches `folder`, without its
-  /// subfolders, for a file whose name differs from `name` only in upper and lower case. If there
-  /// are several, takes the first in byte order.
+  /// Does the same as resolve(). But if resolve() fails and `name` has no slash, searches `folder`,
+  /// without its subfolders, for a file whose name differs from `name` only in upper and lower
+  /// case. If there are several such files, takes the first in byte order.
   absl::StatusOr<std::string> resolve_any_case(const std::string& name,
                                                const std::string& folder) const;
 

@@ -28,7 +28,7 @@ constexpr std::size_t kLocalHeaderBytes = 30;
 constexpr std::size_t kEndBytes = 22;
 constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocator64Bytes = 20;
-constexpr std::uint32_t kIn64 = 0xffffffff;  // the number is in the zip64 extra field
+constexpr std::uint32_t kIn64 = 0xffffffff;  // means that the number is in the zip64 extra field
 constexpr std::uint64_t kMaxNameBytes = 1000;
 
 absl::Status damaged(absl::string_view what) {
@@ -242,7 +242,7 @@ absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   // Only the lengths of the name and of the extra field are used of the local header. They may
   // differ from the lengths in the directory.
   const bool has_header = in.u32() == kLocalHeader;
-  in.text(kLocalHeaderBytes - 4 - 2 - 2);
+  in.text(kLocalHeaderBytes - 4 - 2 - 2);  // all fields between the signature and the two lengths
   const std::uint32_t name_bytes = in.u16();
   const std::uint32_t extra_bytes = in.u16();
   in.text(std::uint64_t{name_bytes} + extra_bytes);

@@ -28,10 +28,10 @@ class ZipArchive {
     bool is_deflated = false;
   };
 
-  /// Reads the directory of the archive. `bytes` MUST outlive the object. The error is
-  /// INVALID_ARGUMENT if it is not a zip file, is damaged or encrypted, or has an unknown
-  /// compression, two files of one name, a name that is not safe (is_safe_name) or a symbolic link;
-  /// it is RESOURCE_EXHAUSTED if a bound above is exceeded.
+  /// Reads the directory of the archive. `bytes` MUST outlive the object. Returns INVALID_ARGUMENT
+  /// if the archive is not a zip file, is damaged or encrypted, or has an unknown compression, two
+  /// files of one name, a name that is not safe (is_safe_name) or a symbolic link. Returns
+  /// RESOURCE_EXHAUSTED if one of the bounds above is exceeded.
   static absl::StatusOr<ZipArchive> open(absl::string_view bytes);
 
   const std::vector<Entry>& entries() const { return entries_; }

@@ -21,8 +21,8 @@ namespace {
 constexpr int kMaxComponents = 4;
 using Raw = std::array<std::int64_t, kMaxComponents>;
 
-/// Sets `to` to the components of one value, which may be integers of any size; returns false if
-/// libdraco cannot convert them.
+/// Sets `to` to the components of the value at `at`. The components may be integers of any size.
+/// Returns false if libdraco cannot convert the value.
 bool load(const draco::PointAttribute& from, draco::AttributeValueIndex at, Raw& to) {
   return from.ConvertValue<std::int64_t>(at, from.num_components(), to.data());
 }

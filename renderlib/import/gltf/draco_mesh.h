@@ -20,8 +20,8 @@ namespace bandsaw::gltf {
 
 class DracoMesh {
  public:
-  /// Decodes a stream. Messages begin with `place`, the path of the primitive in the file. Returns
-  /// INVALID_ARGUMENT if it is not a mesh or is damaged.
+  /// Decodes the stream `bytes`. Messages begin with `place`, the path of the primitive in the
+  /// file. Returns INVALID_ARGUMENT if the stream is damaged or is not a mesh.
   static absl::StatusOr<DracoMesh> decode(absl::string_view bytes, std::string place);
   DracoMesh(DracoMesh&&) noexcept;
   DracoMesh& operator=(DracoMesh&&) noexcept;
@@ -36,8 +36,8 @@ class DracoMesh {
   /// there is no such attribute, if it has fewer components than `shape`, or if the count of
   /// `shape` is not vertices().
   absl::StatusOr<std::vector<float>> floats(std::size_t id, const AccessorShape& shape) const;
-  /// As floats(), for an attribute of integers, which are clamped to [0, 2^32 - 1]. Returns
-  /// INVALID_ARGUMENT also for an attribute of floats.
+  /// Does the same as floats() for an attribute of integers, and clamps the values to
+  /// [0, 2^32 - 1]. Returns INVALID_ARGUMENT also for an attribute of floats.
   absl::StatusOr<std::vector<std::uint32_t>> whole_numbers(std::size_t id,
                                                            const AccessorShape& shape) const;
 

@@ -28,7 +28,7 @@ enum class Component : int {
 
 /// Checked description of an accessor's elements, without their location.
 struct AccessorShape {
-  std::string place;  ///< "accessors[3]"
+  std::string place;  ///< names the accessor in messages: "accessors[3]"
   Component component = Component::kFloat;
   bool normalized = false;
   std::size_t components = 1;  ///< 3 for a VEC3, 16 for a MAT4
@@ -47,14 +47,15 @@ absl::StatusOr<AccessorShape> accessor_shape(const Json& root, std::size_t index
 /// 3.6.2.2.
 float value_of(std::int64_t component, Component type, bool normalized);
 
-/// Returns all components of all elements; integers are converted by value_of(). Returns
-/// INVALID_ARGUMENT if the elements are not within their buffer view, or if a sparse index is not
-/// below the count, and RESOURCE_EXHAUSTED as Buffers::take().
+/// Returns all components of all elements of accessor number `index`, whose shape is `shape`.
+/// Integers are converted by value_of(). Returns INVALID_ARGUMENT if the elements are not within
+/// their buffer view, or if a sparse index is not below the count. Returns RESOURCE_EXHAUSTED if
+/// the model would need too much memory (Buffers::take).
 absl::StatusOr<std::vector<float>> read_floats(const Json& root, std::size_t index,
                                                const AccessorShape& shape, Buffers& buffers);
 
-/// As read_floats(), for accessors of unsigned integers, which are indices and joints. Returns
-/// INVALID_ARGUMENT also for floats and signed integers.
+/// Does the same as read_floats() for accessors of unsigned integers, which hold indices or joints.
+/// Returns INVALID_ARGUMENT also for floats and signed integers.
 absl::StatusOr<std::vector<std::uint32_t>> read_whole_numbers(const Json& root, std::size_t index,
                                                               const AccessorShape& shape,
                                                               Buffers& buffers);

@@ -17,8 +17,9 @@ namespace {
 /// Maximum time of a key, in seconds: the bound of all times in a scene (kMaxTime).
 constexpr double kMaxSeconds = 1e9;
 
-/// Reads the times of a sampler's keys. Returns INVALID_ARGUMENT if they do not increase. `place`
-/// names the channel in messages.
+/// Reads the times of a sampler's keys. Returns INVALID_ARGUMENT if a time is not finite, is above
+/// kMaxSeconds in magnitude, or is not above the time before it. `place` names the channel in
+/// messages.
 absl::StatusOr<std::vector<double>> read_times(const Json& root, std::size_t accessor,
                                                const std::string& place, Buffers& buffers) {
   ASSIGN_OR_RETURN(const AccessorShape shape, accessor_shape(root, accessor, place));

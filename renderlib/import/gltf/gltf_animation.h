@@ -14,8 +14,8 @@
 
 namespace bandsaw::gltf {
 
-/// Returns the names of the file's animations, in its order. A name may be empty, and several
-/// animations may share one.
+/// Returns the names of the file's animations, in the order of the file. A name may be empty, and
+/// several animations may have the same name.
 std::vector<std::string> animation_names(const Json& root);
 
 /// Returns animation number `index`, which MUST exist. Its nodes are keyed by their index in the

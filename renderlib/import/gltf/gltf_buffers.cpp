@@ -37,13 +37,14 @@ absl::Status Buffers::take(std::uint64_t bytes, absl::string_view place) {
   if (bytes > kMaxModelBytes - taken_) {
     return absl::ResourceExhaustedError(
         absl::StrCat(place, ": needs ", bytes, " bytes more; a model's buffers may take ",
-                     kMaxModelBytes, " in all: split it into several files"));
+                     kMaxModelBytes, " in all: split the model into several files"));
   }
   taken_ += bytes;
   return absl::OkStatus();
 }
 
-/// Returns the bytes of a data URI, or of the file that `uri` names.
+/// Returns the bytes of a data URI, or of the file that `uri` names. The name is percent-decoded.
+/// If there is no file of the decoded name, `uri` itself is tried as the name.
 absl::StatusOr<std::string> Buffers::read_uri(const std::string& uri, const std::string& place) {
   if (absl::StartsWithIgnoreCase(uri, "data:")) {
     RETURN_IF_ERROR(take(uri.size(), place));

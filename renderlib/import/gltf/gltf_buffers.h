@@ -15,8 +15,8 @@
 
 namespace bandsaw::gltf {
 
-/// Returns the bytes of a data URI (RFC 2397, base64 or percent-encoded); std::nullopt if `uri` is
-/// not one or its base64 is broken.
+/// Returns the bytes of a data URI (RFC 2397, base64 or percent-encoded). Returns std::nullopt if
+/// `uri` is not a data URI or if its base64 is broken.
 std::optional<std::string> data_of_uri(absl::string_view uri);
 
 class Buffers {

@@ -16,8 +16,8 @@ namespace bandsaw::gltf {
 
 using Json = nlohmann::json;
 
-/// Parses strict JSON whose root is an object. Returns INVALID_ARGUMENT if it is not JSON (with the
-/// byte offset), not UTF-8, nested deeper than 100 levels, or larger than 256 MiB.
+/// Parses strict JSON whose root is an object. Returns INVALID_ARGUMENT if `text` is not JSON (the
+/// message has the byte offset), not UTF-8, nested deeper than 100 levels, or larger than 256 MiB.
 absl::StatusOr<Json> parse_json(absl::string_view text);
 
 /// Returns INVALID_ARGUMENT: "PLACE: WHAT; the file is damaged: export it again".
@@ -25,8 +25,8 @@ absl::Status damaged(absl::string_view place, absl::string_view what);
 
 /// Returns the member `name` of the object `in`; nullptr if there is none or `in` is no object.
 const Json* find(const Json& in, absl::string_view name);
-/// As find(). But object() returns nullptr also if the member is not an object, and list() returns
-/// nullptr also if the member is not a list.
+/// These functions do the same as find(), but object() also returns nullptr if the member is not an
+/// object, and list() also returns nullptr if the member is not a list.
 const Json* object(const Json& in, absl::string_view name);
 const Json* list(const Json& in, absl::string_view name);
 /// Returns the member `name` if it is a list; otherwise an empty list.

@@ -26,8 +26,9 @@ constexpr const char* kLists[] = {"accessors", "buffers",   "bufferViews", "came
                                   "images",    "materials", "meshes",      "nodes",
                                   "samplers",  "scenes",    "skins",       "textures"};
 
-/// A member of a list's objects, and the list to which its index (or list of indices) refers. A
-/// Reference with an empty `list` is for a single object, which is passed to check_member().
+/// A member of the objects of `list` that is an index in the list `target`, or a list of such
+/// indices. A Reference with an empty `list` is for a single object, which is passed to
+/// check_member().
 struct Reference {
   const char* list;
   const char* member;
@@ -124,6 +125,7 @@ absl::Status check_light(const Json& root, const Json& node, const std::string& 
                             absl::StrCat(place, ".extensions.", kLights));
 }
 
+/// Checks the index of the material of each primitive of each mesh.
 absl::Status check_primitives(const Json& root) {
   const Json& meshes = items(root, "meshes");
   for (std::size_t m = 0; m < meshes.size(); ++m) {

@@ -31,8 +31,8 @@ T normalized(double value) {
   return static_cast<T>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }
 
-/// As decode_octahedral(), for components of the type T. The third component of an element holds
-/// the value that stands for 1. The unit vector replaces the first three components.
+/// Does the same as decode_octahedral() for components of the type T. The third component of an
+/// element holds the value that stands for 1. The unit vector replaces the first three components.
 template <class T>
 void decode_octahedral_of(std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::array<T, 4>)) {

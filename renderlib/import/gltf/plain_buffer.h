@@ -16,11 +16,12 @@ namespace bandsaw::gltf {
 class PlainBuffer {
  public:
   /// Each function add() appends a copy of the values and returns the number of a new accessor for
-  /// it. `components` is 1 to 4, or 16 for a matrix. For 32-bit integers it is 1.
+  /// the copy. An element has `components` values: 1 to 4, or 16 for a matrix. An element of 32-bit
+  /// integers has one.
   std::size_t add(absl::Span<const float> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint16_t> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint32_t> values);
-  /// Appends a copy of the bytes and returns the number of a new buffer view for it.
+  /// Appends a copy of the bytes and returns the number of a new buffer view for the copy.
   std::size_t add_bytes(absl::string_view bytes);
 
   /// Adds accessors, buffer views and the buffer with the name `uri` to `root`, and returns the

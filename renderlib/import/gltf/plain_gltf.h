@@ -1,8 +1,8 @@
 #pragma once
 
-// Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, except for
-// joints, which are 16-bit integers; indices are 32-bit; no array is sparse, compressed or outside
-// of one buffer. model/model.cpp lets Assimp read the result.
+// Rewrites a glTF 2.0 file so that any reader understands it. In the result, attributes are floats,
+// except for joints, which are 16-bit integers, and indices have 32 bits. All arrays lie in one
+// buffer, and none is sparse or compressed. model/model.cpp lets Assimp read the result.
 
 #include <cstddef>
 #include <optional>
@@ -28,16 +28,21 @@ struct PlainGltf {
 };
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
-/// Reads the model at `path`, a real path below `scene`, and the buffers to which it refers. Images
-/// in files stay there. All other images that textures use are moved to the buffer. An image that
-/// no texture uses stays in the list without its bytes, so that later images keep their numbers.
-/// Animations other than the chosen one, tangents and attributes that glTF does not define are
-/// omitted. In the result each mesh has one pose: if several nodes pose a mesh differently, by
-/// skins or weights of morph targets, the mesh is copied to the end of the list for each pose after
-/// the first. The weights of a node become those of its mesh. Everything else keeps its place and
-/// number. Returns NOT_FOUND if the file does not have the chosen animation, INVALID_ARGUMENT if
-/// the file is damaged or requires an extension that replaces vertices or images by unreadable
-/// bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and RESOURCE_EXHAUSTED for more than
+/// Reads the model at `path`, a real path below `scene`, and the buffers to which it refers.
+///
+/// Images that are files of their own stay files. All other images that textures use are moved to
+/// the buffer. An image that no texture uses stays in the list without its bytes, so that later
+/// images keep their numbers. Animations other than the chosen one, tangents and attributes that
+/// glTF does not define are omitted.
+///
+/// In the result each mesh has one pose. If several nodes pose a mesh differently, by skins or
+/// weights of morph targets, the mesh is copied to the end of the list for each pose after the
+/// first. The weights of a node become those of its mesh. Everything else keeps its place and
+/// number.
+///
+/// Returns NOT_FOUND if the file does not have the chosen animation. Returns INVALID_ARGUMENT if
+/// the file is damaged, or requires an extension for vertices or images that is not supported.
+/// Returns NOT_FOUND or PERMISSION_DENIED for a buffer's file, and RESOURCE_EXHAUSTED for more than
 /// 8 GiB of buffers and decoded arrays.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
                                           const AnimationChoice& choice = {});

@@ -26,7 +26,8 @@ struct Semantic {
 constexpr Semantic kSemantics[] = {{"POSITION", 3, 3}, {"NORMAL", 3, 3},   {"TEXCOORD_", 2, 2},
                                    {"COLOR_", 3, 4},   {"WEIGHTS_", 4, 4}, {"JOINTS_", 4, 4}};
 
-/// Returns nullptr for an attribute that is left out.
+/// Returns the entry of kSemantics for an attribute of this name; nullptr if the attribute is left
+/// out of the result.
 const Semantic* semantic_of(absl::string_view attribute) {
   const auto found =
       std::find_if(std::begin(kSemantics), std::end(kSemantics), [&](const Semantic& semantic) {
@@ -85,7 +86,8 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
   }
   ASSIGN_OR_RETURN(AccessorShape shape, accessor_shape(root_, accessor, place));
   RETURN_IF_ERROR(check_shape(name, shape));
-  // Integer colours are always normalised, whatever the file says: glTF has no others.
+  // Integer colours are always normalised, whatever the file says: glTF has no other integer
+  // colours.
   shape.normalized |= is_color;
   ASSIGN_OR_RETURN(std::vector<float> values, float_values(name, accessor, shape, stream));
   if (is_color && shape.components == 3) {
@@ -99,8 +101,8 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
 }
 
 /// Adds the attribute `name` ("JOINTS_0") to the buffer as 16-bit joints. A joint of weight 0
-/// becomes joint 0, because files may have any number there. Raises `joints` to 1 + the largest
-/// joint of a weight other than 0.
+/// becomes joint 0, because files may have any number for such a joint. Raises `joints` to 1 + the
+/// largest joint of a weight other than 0.
 absl::StatusOr<PlainMeshes::Added> PlainMeshes::joints_with_weight(const Json& attributes,
                                                                    const std::string& name,
                                                                    const Stream& stream,

@@ -17,7 +17,7 @@ namespace bandsaw::gltf {
 
 class PlainMeshes {
  public:
-  /// All arguments MUST outlive this object. `root` is that of the original file.
+  /// All arguments MUST outlive this object. `root` is the JSON of the original file.
   PlainMeshes(const Json& root, Buffers& buffers, PlainBuffer& out)
       : root_(root), buffers_(buffers), out_(out) {}
 
@@ -28,7 +28,7 @@ class PlainMeshes {
   absl::StatusOr<Json> mesh(std::size_t index);
 
   /// Returns 1 + the largest joint to which a vertex of meshes[index] refers with a weight other
-  /// than zero; 0 if there is none, or if mesh() has not been called for it.
+  /// than zero. Returns 0 if there is no such joint, or if mesh(index) has not been called.
   std::uint32_t joints_of(std::size_t index) const;
 
  private:
@@ -36,7 +36,7 @@ class PlainMeshes {
   struct Added {
     std::size_t accessor = 0;
     std::size_t count = 0;
-    std::uint32_t largest = 0;  ///< largest index, if it holds indices
+    std::uint32_t largest = 0;  ///< largest index, if the accessor holds indices
   };
   /// The decoded Draco stream of a primitive; empty for a primitive that is not compressed.
   struct Stream {

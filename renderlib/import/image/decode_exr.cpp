@@ -84,9 +84,9 @@ absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) 
   return layout;
 }
 
-/// Returns a copy of the file whose header has the line order "from the top". With any other order,
-/// tinyexr mirrors the image, or each of its tiles. This is wrong, because tinyexr finds rows and
-/// tiles by their numbers, in whatever order they are stored.
+/// Returns a copy of the file in which the header has the line order "from the top". With any other
+/// order, tinyexr mirrors the image, or each of its tiles. The mirrored image is wrong, because
+/// tinyexr has already put each row or tile at the place that its number gives.
 std::string with_rows_from_the_top(absl::string_view bytes) {
   constexpr absl::string_view kLineOrder("lineOrder\0lineOrder\0\1\0\0\0", 24);
   std::string out(bytes);

@@ -100,6 +100,7 @@ absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
 template <class T>
 using Pixels = std::shared_ptr<T>;
 
+/// Returns pixels that stb_image has allocated. stb_image frees them with the last reference.
 template <class T>
 Pixels<T> owned(T* pixels) {
   return Pixels<T>(pixels, [](T* p) { stbi_image_free(p); });
@@ -111,6 +112,7 @@ struct Shape {
   int channels = 0;  ///< of the file: 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
 };
 
+/// Returns an error with the reason for which stb_image could not decode a file.
 absl::Status failure() {
   const char* reason = stbi_failure_reason();
   return absl::InvalidArgumentError(
@@ -168,7 +170,9 @@ absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
 // and every run.
 struct Endless {
   absl::string_view rest;
-  const char* ahead = nullptr;  ///< stb_image's own buffer, which its first request fills
+  /// The buffer in which stb_image keeps bytes that it reads ahead. The first request of stb_image
+  /// is for this buffer.
+  const char* ahead = nullptr;
   bool overrun = false;
 };
 

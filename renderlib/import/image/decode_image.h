@@ -33,16 +33,16 @@ absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
                                           std::vector<std::string>& warnings,
                                           Gray gray = Gray::kExpanded);
 
-/// Decodes the alpha of an image, other than EXR, as a linear 8-bit image of one channel. If the
-/// image has no alpha, the result is a single texel of 255. Errors as decode_image();
-/// INVALID_ARGUMENT for EXR.
+/// Decodes the alpha of an image as a linear 8-bit image of one channel. If the image has no alpha,
+/// the result is a single texel of 255. Returns INVALID_ARGUMENT for an EXR file, and the errors of
+/// decode_image().
 absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
 
 /// Returns true if the file has an alpha channel; false for EXR and if the file cannot be read.
 bool image_has_alpha(absl::string_view bytes);
 
 /// Decodes an image file, PFM included, to linear floats without alpha, for `bandsaw compare` and
-/// for light maps that a converter resamples. Errors as decode_image().
+/// for light maps that a converter resamples. Returns the errors of decode_image().
 absl::StatusOr<Image> decode_picture(absl::string_view bytes);
 
 }  // namespace bandsaw

@@ -1,4 +1,4 @@
-// Compiles stb_image, without the formats that scene.proto does not list.
+// Compiles stb_image with only those image formats that scene.proto lists.
 #include <cstdlib>
 
 #define STBI_NO_PSD

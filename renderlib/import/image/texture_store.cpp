@@ -94,9 +94,10 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
 }
 
 /// Converts an image to an index_map, which varies the index of refraction over a surface. The
-/// image holds factors of F0, the reflectance along the normal. A material with `index` (> 1) and
-/// this index_map has, at each point, the F0 of `index` times the luminance of the image. The
-/// result has one channel of 8 bits, or of floats if the image has floats.
+/// image holds factors of F0, the reflectance along the normal. `index` (> 1) is the material's
+/// index of refraction. With this index_map, the material's F0 at each point is the luminance of
+/// the image, multiplied by the F0 that belongs to `index`. The result has one channel of 8 bits,
+/// or of floats if the image has floats.
 ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index) {
   const double root = (index - 1) / (index + 1);  // square root of F0
   const std::size_t count = std::size_t{amounts.width} * amounts.height;

@@ -19,7 +19,8 @@
 namespace bandsaw {
 
 class TextureStore {
-  /// An image with its use.
+  /// Identifies an image with its use: the key of image(), followed by the members of Use that
+  /// change the texture.
   using Key = std::tuple<std::string, int, int, std::array<float, 3>, int, UvSet,
                          std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
   struct Decoded {
@@ -38,6 +39,7 @@ class TextureStore {
 
   /// Returns a texture that is `value` everywhere. All requests of one value get the same texture.
   TextureId constant(const Rgb& value);
+  /// Adds the texture, even if an equal one is already stored.
   TextureId add(Texture texture);
 
   /// How a material uses an image.

@@ -1,5 +1,5 @@
-// Converts one bsdf of a Mitsuba scene. read_kind() calls the function for the bsdf's type, which
-// sets the fields of a material of a Bandsaw scene file. Wrappers around a bsdf are in
+// Converts one bsdf of a Mitsuba scene. read_kind() calls the function for the bsdf's type. This
+// function sets the fields of a material of a Bandsaw scene file. Wrappers around a bsdf are in
 // bsdf_wrappers.cpp, principled materials in principled_bsdfs.cpp.
 
 #include "renderlib/import/mitsuba/bsdf_reader.h"
@@ -98,7 +98,7 @@ absl::StatusOr<double> BsdfReader::relative_index(const Parameters& from, const 
                                                   Draft& draft) {
   ASSIGN_OR_RETURN(const double in, index_of_refraction(from, "int_ior", inside));
   ASSIGN_OR_RETURN(const double out, index_of_refraction(from, "ext_ior", "air"));
-  draft.turned = in < out;
+  draft.turned = in < out;  // The geometry is turned over if its outside is denser.
   return draft.turned ? out / in : in / out;
 }
 
@@ -169,6 +169,7 @@ absl::Status BsdfReader::thin_dielectric(const Parameters& from, Draft& draft) {
 }
 
 absl::Status BsdfReader::set_metal(const Parameters& from, scene::Conductor& to) {
+  // In scenes of Mitsuba 0.x (`is_old`), a conductor without eta is copper.
   const bool is_copper = to_.is_old && !from.has("eta");
   ASSIGN_OR_RETURN(const std::string name, from.text("material", is_copper ? "Cu" : "none"));
   if (name != "none") {
@@ -267,7 +268,8 @@ absl::Status BsdfReader::highlight(const Parameters& from, double alpha, Draft& 
 
 absl::Status BsdfReader::phong(const Parameters& from, Draft& draft) {
   ASSIGN_OR_RETURN(const Varying exponent, varying_of(from, "exponent", 30, surface_, to_));
-  // Beckmann's lobe of the same width at its peak (Walter et al. 2007, section 5.3).
+  // The alpha of the Beckmann lobe that is as wide at its peak as the Phong lobe (Walter et al.
+  // 2007, section 5.3).
   return highlight(from, std::sqrt(2 / (std::max(exponent.value, 0.0) + 2)), draft);
 }
 
