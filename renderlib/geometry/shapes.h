@@ -87,6 +87,7 @@ inline ShapeRef shape_ref(const Shapes& shapes, std::size_t primitive) {
   return {ShapeKind::kDisk, primitive - shapes.triangles.size()};
 }
 
+/// Returns the material of a primitive. `primitive` MUST be below shapes.size().
 inline MaterialId material_of(const Shapes& shapes, std::size_t primitive) {
   const auto [kind, index] = shape_ref(shapes, primitive);
   return kind == ShapeKind::kSphere     ? shapes.spheres[index].material

@@ -55,6 +55,7 @@ Vec2 mesh_uv(const std::vector<std::array<float, 2>>& uvs,
   return uv(0) * (1 - hit.u - hit.v) + uv(1) * hit.u + uv(2) * hit.v;
 }
 
+/// Returns the interpolated vertex colour. The mesh MUST have colours.
 Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, const Hit& hit) {
   const auto color = [&](std::size_t corner) {
     const auto& value = mesh.colors[index[corner]];

@@ -56,8 +56,9 @@ class Portals {
     std::array<std::optional<SphericalRectangle>, kMaxPortals> rectangles;
     double solid_angle = 0;  ///< sum over the rectangles
   };
+  /// Returns the view from the point `from`.
   View view_from(const Vec3& from) const;
-  /// Returns the number of portals of the view through which the ray passes.
+  /// Returns the number of portals of `view` through which the ray passes.
   std::uint32_t passed(const View& view, const Vec3& from, const Vec3& direction) const;
 
   std::vector<Portal> portals_;

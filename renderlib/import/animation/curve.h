@@ -50,7 +50,9 @@ class Curve {
     double share = 0;  ///< position in the interval, [0, 1)
   };
   Place place_of(double time) const;
+  /// Returns the `width()` numbers of the value at a key.
   absl::Span<const double> value(std::size_t key) const;
+  /// Returns the change per unit of time of a value's number `number`, before or after a key.
   double tangent(std::size_t key, std::size_t number, bool before) const;
 
   std::vector<double> times_;

@@ -15,7 +15,7 @@ namespace bandsaw {
 struct ConvertedScene {
   scene::Scene scene;
   /// Files that the scene names and that the converter made (meshes, images): name -> bytes. All
-  /// other files that the scene names are below the folder of the foreign scene.
+  /// other files that the scene names are below the folder of the original scene.
   std::map<std::string, std::string> made_files;
   /// Features without a counterpart and their substitutes, each with its place in the source:
   /// "kitchen.pbrt:17: texture \"windy\" is shown as its mean colour".

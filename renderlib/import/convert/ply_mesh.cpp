@@ -1,5 +1,5 @@
 // Writes a mesh as a binary PLY file, in the form that Assimp reads without errors. The converters
-// of foreign scenes pass meshes to the importer as such files.
+// of other renderers' scenes pass meshes to the importer as such files.
 
 #include "renderlib/import/convert/ply_mesh.h"
 
@@ -22,6 +22,7 @@ void append(const std::vector<std::array<float, n>>& list, std::size_t i, std::s
   }
 }
 
+/// Returns the header, which lists the properties of vertices for which the mesh has numbers.
 std::string header_of(const PlyMesh& mesh) {
   std::string header = absl::StrCat("ply\nformat binary_little_endian 1.0\nelement vertex ",
                                     mesh.positions.size(), "\n");

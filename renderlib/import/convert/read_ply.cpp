@@ -50,6 +50,7 @@ std::size_t size_of(Type type) {
   return kSizes[static_cast<std::size_t>(type)];
 }
 
+/// Returns the type that a header calls `name`.
 absl::StatusOr<Type> type_of(absl::string_view name) {
   static const std::map<absl::string_view, Type> types = {
       {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
@@ -70,6 +71,7 @@ class Numbers {
  public:
   Numbers(absl::string_view bytes, Encoding encoding) : rest_(bytes), encoding_(encoding) {}
 
+  /// Removes the next number from the rest and returns it. `type` is its type in a binary file.
   absl::StatusOr<double> take(Type type) {
     return encoding_ == Encoding::kText ? take_text() : take_binary(type);
   }

@@ -22,6 +22,7 @@ class Writer {
  public:
   std::string text;
 
+  /// Writes all fields of `message` that are set. Their lines begin with `indent` spaces.
   void write_fields(const Message& message, std::size_t indent) {
     const auto* reflection = message.GetReflection();
     std::vector<const FieldDescriptor*> fields;
@@ -45,6 +46,8 @@ class Writer {
     absl::StrAppend(&text, std::string(indent, ' '), line, "\n");
   }
 
+  /// Writes a message as the field `name`: on one line if it fits into kColumns, otherwise with
+  /// lines for its fields.
   void write_message(const Message& message, const std::string& name, std::size_t indent) {
     const std::string line = absl::StrCat(name, " { ", single_line(message), "}");
     if (indent + line.size() <= kColumns) {

@@ -1,5 +1,5 @@
-// Confines the process that reads foreign files: sets resource limits, restricts files to two
-// folders by Landlock, and forbids system calls by a seccomp filter, which is a list of
+// Confines the process that reads files of unknown origin: sets resource limits, restricts files to
+// two folders by Landlock, and forbids system calls by a seccomp filter, which is a list of
 // instructions for the kernel's packet filter.
 
 #include "renderlib/import/files/confine.h"
@@ -179,6 +179,7 @@ absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* w
   return setrlimit(resource, &value) == 0 ? absl::OkStatus() : errno_status(errno, what);
 }
 
+// Sets all resource limits of this process.
 absl::Status limit_resources(const Confinement& to) {
   RETURN_IF_ERROR(limit(RLIMIT_CORE, 0, "cannot limit core dumps"));
   // 64 files are more than enough, because files are read whole, one after the other.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Confinement of the process that parses foreign files: it gives up all rights that it does not
-// need before it reads anything.
+// Confinement of the process that parses files of unknown origin. Before the process parses
+// anything, it gives up all rights that it does not need.
 
 #include <cstdint>
 #include <string>

@@ -35,10 +35,12 @@ absl::Status damaged(absl::string_view what) {
   return absl::InvalidArgumentError(absl::StrCat("is not a zip file that can be read: ", what));
 }
 
-/// Reads little-endian numbers; beyond the end they are 0 and `past_end` is set.
+/// Reads little-endian numbers, from the byte `at` on. A number beyond the end is 0, and `past_end`
+/// is set.
 class Reader {
  public:
   Reader(absl::string_view bytes, std::uint64_t at) : bytes_(bytes), at_(at) {}
+  /// Reads the next number, which has `size` bytes.
   std::uint64_t number(std::size_t size) {
     std::uint64_t value = 0;
     const absl::string_view part = text(size);
@@ -49,6 +51,7 @@ class Reader {
   }
   std::uint32_t u16() { return static_cast<std::uint32_t>(number(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
+  /// Returns the next `size` bytes and moves past them.
   absl::string_view text(std::uint64_t size) {
     if (at_ > bytes_.size() || size > bytes_.size() - at_) {
       past_end = true;

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kMaxElements = std::size_t{1} << 31;
 constexpr std::size_t kMaxStride = 252;  ///< glTF 2.0, 5.11.4
 
+/// Returns the bytes of a component; 0 for an unknown type.
 std::size_t size_of(Component type) {
   switch (type) {
     case Component::kByte:
@@ -30,6 +31,7 @@ std::size_t size_of(Component type) {
   return 0;
 }
 
+/// Returns the number of components of an accessor's type; 0 for a type that is not supported.
 std::size_t components_of(absl::string_view type) {
   return type == "SCALAR" ? 1
          : type == "VEC2" ? 2
@@ -62,7 +64,7 @@ std::int64_t load_integer(const char* from, Component type) {
   }
 }
 
-// Both functions set `to` to the component at `from`.
+// These two functions set `to` to the component at `from`.
 void convert(const char* from, const AccessorShape& shape, float& to) {
   to = shape.component == Component::kFloat
            ? load<float>(from)

@@ -36,6 +36,7 @@ class Buffers {
   absl::Status take(std::uint64_t bytes, absl::string_view place);
 
  private:
+  // Steps of view(), described at their definitions.
   absl::StatusOr<absl::string_view> buffer(std::size_t index);
   absl::StatusOr<std::string> read_uri(const std::string& uri, const std::string& place);
   absl::StatusOr<std::string> decode(const Json& of, const Json& compressed,

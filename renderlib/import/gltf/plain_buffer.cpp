@@ -15,6 +15,7 @@ absl::string_view bytes_of(absl::Span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
+/// Returns glTF's type of an element with 1 to 4 components, or with 16 (a matrix).
 const char* type_of(std::size_t components) {
   return components == 1   ? "SCALAR"
          : components == 2 ? "VEC2"

@@ -29,6 +29,8 @@ class PlainBuffer {
   std::string finish(const std::string& uri, Json& root);
 
  private:
+  /// Appends the bytes and returns the number of a new accessor of `count` elements for them.
+  /// `component` is glTF's componentType.
   std::size_t add_accessor(absl::string_view bytes, int component, std::size_t components,
                            std::size_t count);
 

@@ -57,6 +57,7 @@ class Rewriter {
   Rewriter(const GltfFile& file, Buffers& buffers)
       : from_(file.root), buffers_(buffers), meshes_(file.root, buffers, out_) {}
 
+  /// Returns the plain document, with the animation that `choice` names. May be called once.
   absl::StatusOr<PlainGltf> run(const AnimationChoice& choice) {
     plain_.root = from_;
     plain_.animation_names = animation_names(from_);

@@ -44,6 +44,7 @@ class PlainMeshes {
     const Json* attributes = nullptr;  ///< numbers of the stream's attributes, keyed by name
   };
 
+  // Steps of mesh(), described at their definitions. `place` names the primitive in messages.
   absl::StatusOr<Json> primitive(const Json& from, const std::string& place, std::uint32_t& joints);
   absl::StatusOr<Stream> stream_of(const Json& primitive, const std::string& place);
   absl::StatusOr<Json> attributes(const Json& from, const Stream& stream, const std::string& place,

@@ -176,6 +176,8 @@ struct Endless {
   bool overrun = false;
 };
 
+// Called by stb_image: writes at most `size` bytes of the source `user` to `to`. Returns their
+// number.
 int read_endless(void* user, char* to, int size) {
   auto& source = *static_cast<Endless*>(user);
   source.ahead = source.ahead == nullptr ? to : source.ahead;
