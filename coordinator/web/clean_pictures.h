@@ -45,9 +45,10 @@ class CleanPictures {
 
   explicit CleanPictures(Engine& engine) : engine_(engine) {}
 
-  /// Submits the jobs that render the guides of a finished job, unless that was done before. They
-  /// have the priority of the job. FAILED_PRECONDITION: the job is not done, its image cannot be
-  /// cleaned (scheduler/api/clean_jobs.h), or it is larger than kMaxPixels. NOT_FOUND: no such job.
+  /// Submits the jobs that render the guides of a finished job, unless they were submitted before.
+  /// The submitted jobs have the priority of the finished job. FAILED_PRECONDITION: the job is not
+  /// done, its image cannot be cleaned (scheduler/api/clean_jobs.h), or it is larger than
+  /// kMaxPixels. NOT_FOUND: no such job.
   absl::StatusOr<State> start(JobId job) EXCLUDES(mutex_);
   /// Returns the state, and starts the filter when the guides are done. NOT_FOUND: no such job.
   absl::StatusOr<State> state(JobId job) EXCLUDES(mutex_);
@@ -68,7 +69,9 @@ class CleanPictures {
   };
   struct Entry {
     Stage stage = Stage::kNone;
-    std::vector<JobId> jobs = {};  ///< albedo, shape; then, if needed, the job of half the samples
+    /// The jobs that render the guides: first albedo, then shape. For an image of few samples, a
+    /// third job renders half of the image's samples again.
+    std::vector<JobId> jobs = {};
     absl::Status why = {};
     std::shared_ptr<const Kept> kept = nullptr;
     std::uint64_t used = 0;  ///< number of the last call that used it

@@ -1,4 +1,6 @@
-// The handlers of clean (denoised) pictures: /api/jobs/ID/clean and its files (proto/web.proto).
+// The handlers of requests for the clean (denoised) picture of a job (proto/web.proto). A POST of
+// /api/jobs/ID/clean requests the picture, and a GET returns its state. /api/jobs/ID/clean.png,
+// .exr and .pfm return the picture as a file.
 
 #include <tuple>
 

@@ -1,5 +1,6 @@
-// The socket does not block: each operation is repeated, with poll() in between, until it succeeds
-// or the deadline is over.
+// Reads from a socket and writes to it, with or without TLS. The socket does not block: each
+// operation is repeated, with poll() in between, until the operation succeeds or the deadline has
+// passed.
 
 #include "coordinator/web/connection.h"
 
@@ -112,6 +113,7 @@ void Connection::begin_body() {
   deadline_ = Clock::now() + timeout_;
 }
 
+// The response gets as much time as a body.
 void Connection::begin_answer() { begin_body(); }
 
 void Connection::extend(std::size_t bytes) {

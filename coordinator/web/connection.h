@@ -1,8 +1,8 @@
 #pragma once
 
-// One connection of a client to the dashboard, for one request, with TLS or without. The deadline
-// applies to the connection as a whole, not to each read. So a peer that transfers a byte now and
-// then occupies a thread no longer than a silent one.
+// One connection of a client to the dashboard, for one request, with TLS or without. The head, the
+// body and the response have one deadline each, for all reads or writes together. So a peer that
+// transfers a byte now and then occupies a thread hardly longer than a silent peer.
 
 #include <openssl/ssl.h>
 

@@ -1,8 +1,9 @@
 #pragma once
 
-// The dashboard of `bandsaw serve`: a web page and the requests that it makes to the engine (the
-// scheduler and the store). It uses plain HTTP on loopback and TLS elsewhere. Users log in by the
-// users' secret, and browsers that render use the secret of their link.
+// The dashboard of `bandsaw serve`: a web page, and the server that answers the requests of the
+// page from the engine (the scheduler and the store). The server uses plain HTTP on loopback and
+// TLS elsewhere. Users log in by the users' secret. A browser that renders for the farm logs in by
+// another secret: that of the link through which it joined.
 
 #include <memory>
 #include <string>
@@ -40,8 +41,8 @@ class Dashboard {
                                                           const DashboardOptions& options);
   /// Closes every connection.
   ~Dashboard();
-  /// Sets the new secrets. If the users' secret has changed, logins with the old one become invalid
-  /// and every connection is closed, because it may use the old one.
+  /// Sets the new secrets. If the users' secret has changed, logins with the old secret become
+  /// invalid, and every connection is closed, because any of them may use the old secret.
   void renew(const link::Identity& identity);
   int port() const;
   /// Returns true if the dashboard uses TLS.

@@ -1,5 +1,7 @@
-# cmake -DOUT=page_files.cpp -DFOLDER=page -DMADE=FOLDER -P embed.cmake: writes the C++ file OUT, which has the bytes of all files in both folders
-# and defines page_files() of coordinator/web/page_files.h. MADE: the folder of files that the build makes.
+# Embeds the files of the dashboard's page into the coordinator's program.
+# Usage: cmake -DOUT=page_files.cpp -DFOLDER=page -DMADE=downloads -P embed.cmake
+# FOLDER: the folder of the page's files in the repository. MADE: the folder of further files, which the build makes. Writes OUT, a C++ file
+# that has the bytes of all files of both folders and defines page_files() (coordinator/web/page_files.h).
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")

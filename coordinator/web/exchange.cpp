@@ -73,6 +73,8 @@ class Stream {
   }
 
  private:
+  /// Returns `count`, the number of bytes that were read or written. Sets `error` to eof if no byte
+  /// was moved.
   static std::size_t moved(std::ptrdiff_t count, beast::error_code& error) {
     error = count > 0 ? beast::error_code() : boost::asio::error::eof;
     return count > 0 ? static_cast<std::size_t>(count) : 0;
@@ -92,7 +94,8 @@ class Exchange {
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
   }
 
-  /// Returns HttpReply::take_over of the handler's reply; if that is set, nothing was written.
+  /// Returns HttpReply::take_over of the handler's reply. If this function is set, no response was
+  /// written.
   TakeOver run(const HttpHandler& handler) {
     beast::error_code error;
     http::read_header(stream_, buffer_, parser_, error);
@@ -161,6 +164,7 @@ class Exchange {
                  : absl::string_view();
   }
 
+  /// Returns true if one of the headers that every response gets has this name.
   bool is_of_every_reply(const std::string& name) const {
     return std::any_of(headers_.begin(), headers_.end(),
                        [&](const HttpField& field) { return field.first == name; });

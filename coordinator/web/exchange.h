@@ -14,7 +14,9 @@ inline constexpr std::uint32_t kMaxHeadBytes = 32 << 10;
 
 /// Reads one request, calls `handler`, and writes its response with `headers` added. Malformed HTTP
 /// gets an error response. A connection that ends, or whose deadline passes, gets no response.
-/// Returns the response's `take_over`, which the caller calls if it is set.
+/// If the handler's reply has a function `take_over`, because the client asked for another protocol
+/// (WebSocket), no response is written, and this function is returned. The caller must call it. In
+/// all other cases the result is empty.
 TakeOver exchange(Connection& connection, const HttpHandler& handler,
                   const std::vector<HttpField>& headers);
 

@@ -1,4 +1,5 @@
-// The handlers for the farm as a whole: jobs, workers, logs, metrics.
+// The handlers of the dashboard's requests that concern the whole farm: all jobs, all workers, the
+// logs of workers, and metrics.
 
 #include <algorithm>
 
@@ -25,6 +26,8 @@ std::vector<WorkerView> all_workers(Engine& engine) {
   return blocking_call<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
 }
 
+/// Returns the jobs and the workers. Unfinished jobs come first. In both groups of jobs, newer ones
+/// come before older ones.
 web::Overview overview(Engine& engine) {
   web::Overview overview;
   overview.set_version(BANDSAW_VERSION);
@@ -47,6 +50,7 @@ web::Overview overview(Engine& engine) {
   return overview;
 }
 
+/// Returns the log of the worker that the request's parameter `name` names.
 absl::StatusOr<web::Log> worker_log(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.parameter("name")));
   using Lines = absl::StatusOr<std::vector<std::string>>;

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxAboutBytes = 300;
 constexpr char kSuffix[] = ".textproto";
 
+/// Returns the comment at the beginning of a scene file as one line of at most kMaxAboutBytes,
+/// without the signs #.
 std::string leading_comment(const std::string& path) {
   std::ifstream file(path);
   std::string about;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The gallery: scene files that are installed with Bandsaw below one folder, which the dashboard
-// shows and renders.
+// The gallery: the scene files below one folder, which is installed with Bandsaw. The dashboard
+// shows these scenes and renders them on request.
 
 #include <optional>
 #include <string>
@@ -32,11 +32,12 @@ class Gallery {
   std::vector<GalleryScene> scenes_;
 };
 
-/// Returns the beginning of the request ids of a scene's jobs, 24 characters. The scene's jobs
-/// are found by this prefix, also after a restart of the coordinator.
+/// Returns the first 24 characters of the request id of each job that the gallery submits for this
+/// scene. These jobs are found by this prefix, also after a restart of the coordinator. A request
+/// id is a text that the submitter of a job chooses.
 std::string request_prefix(const GalleryScene& scene);
 
-/// Returns the newest job that rendered the scene from the gallery; nullptr: none.
+/// Returns the newest of the `jobs` that the gallery has submitted for the scene; nullptr: none.
 const JobView* newest_of(const GalleryScene& scene, const std::vector<JobView>& jobs);
 
 }  // namespace bandsaw::coordinator

@@ -16,6 +16,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the value of a hexadecimal digit; -1: `c` is none.
 int hex_digit(char c) {
   if (absl::ascii_isdigit(static_cast<unsigned char>(c))) {
     return c - '0';
@@ -24,8 +25,8 @@ int hex_digit(char c) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// Replaces each percent escape, such as "%20", by its byte; with `plus_is_space` also each '+' by
-/// a space.
+/// Returns the text with each percent escape, such as "%20", replaced by the byte that it stands
+/// for. If `plus_is_space`, each '+' is replaced by a space.
 std::string decoded(absl::string_view text, bool plus_is_space) {
   std::string out;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -46,8 +47,8 @@ struct ByteRange {
   std::uint64_t last = 0;  ///< inclusive; less than `first`: the body has no such bytes
 };
 
-/// Parses the header Range for a body of `size` bytes; std::nullopt if it is not one valid range of
-/// bytes.
+/// Parses the value of the header Range, such as "bytes=0-99", for a body of `size` bytes.
+/// std::nullopt: the value is not exactly one valid range of bytes.
 std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) {
   if (!absl::StartsWithIgnoreCase(header, "bytes=") || !absl::StrContains(header, '-')) {
     return std::nullopt;

@@ -43,7 +43,8 @@ void parse_target(absl::string_view target, HttpRequest& request);
 using HttpBody = std::function<absl::StatusOr<absl::string_view>()>;
 
 class Connection;
-/// Takes over a connection whose request asks for another protocol. Closes its socket in the end.
+/// A function that takes over a connection whose request asks for another protocol (WebSocket). In
+/// the end the function closes the connection's socket.
 using TakeOver = std::function<void(std::unique_ptr<Connection>)>;
 
 struct HttpReply {

@@ -41,7 +41,8 @@ int listen_at(const addrinfo& address) {
   if (listener < 0) {
     return -1;
   }
-  // SO_REUSEPORT is not set, because two coordinators would then share the port without an error.
+  // With SO_REUSEPORT, two coordinators would share the port without an error. So this option is
+  // not set.
   switch_on(listener, SOL_SOCKET, SO_REUSEADDR);
   if (address.ai_family == AF_INET6) {
     const int off = 0;  // "::" also accepts IPv4

@@ -38,14 +38,16 @@ class HttpServer {
   void cut() EXCLUDES(mutex_);
 
  private:
-  /// Runs on each thread: accepts a connection, serves it, closes it.
+  /// Runs on each thread until the server is stopped: accepts connections, and serves and closes
+  /// one after the other.
   void run() EXCLUDES(mutex_);
   /// Serves one connection. Returns true if the caller must close the socket, false if the
   /// connection was taken over.
   bool serve(int socket) EXCLUDES(mutex_);
-  /// Notes an open connection. Returns false if the server is being stopped, or the address has too
-  /// many connections; then the caller must close the connection.
+  /// Adds a connection to open_ and returns true. If the server is being stopped, or the address
+  /// has too many connections, returns false. Then the caller must close the connection.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
+  /// Removes the connection from open_.
   void leave(int socket) EXCLUDES(mutex_);
   /// Call after a failed accept; `error`: its errno. If file descriptors or memory have run out,
   /// waits a moment. Returns false if the server is being stopped.

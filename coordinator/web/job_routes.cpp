@@ -26,8 +26,8 @@ HttpReply answer_with(const Changed& changed) {
   return reply(job);
 }
 
-/// Adds the request POST /api/jobs/ID/NAME, which calls `command` for the job and answers with the
-/// state of the job after it.
+/// Adds the request POST /api/jobs/ID/NAME. It calls `command` for the job, and answers with the
+/// state of the job after the command.
 void add_command(Router& router, Engine& engine, const char* name, JobCommand command) {
   router.post(absl::StrCat("/api/jobs/*/", name), [&engine, command](const HttpRequest& request,
                                                                      const HttpBody&) {
@@ -38,6 +38,7 @@ void add_command(Router& router, Engine& engine, const char* name, JobCommand co
   });
 }
 
+/// Sets the job's priority to the one in the body. Returns the job after this change.
 Changed set_priority(Engine& engine, const HttpRequest& request, const HttpBody& body) {
   ASSIGN_OR_RETURN(const JobId job, job_of(request));
   web::Priority wanted;
@@ -46,6 +47,7 @@ Changed set_priority(Engine& engine, const HttpRequest& request, const HttpBody&
       [&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
 }
 
+/// Returns the job's state, the reasons why it is not done, and which worker rendered which rows.
 absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   ASSIGN_OR_RETURN(const JobView view, job_view(engine, id));
@@ -65,6 +67,8 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request
   return page;
 }
 
+/// Returns the frames of a sequence (a job of many frames) that have changed since an earlier
+/// reply. The request's parameter `after` is the number of the last change that the client knows.
 absl::StatusOr<farm::ListFramesReply> frames(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   std::uint64_t after = 0;

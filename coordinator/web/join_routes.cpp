@@ -1,6 +1,7 @@
-// The handlers of the requests of browsers that render (/join/…). They send the renderer and blobs
-// of scenes, and receive bands. All requests except that for the renderer need the secret of the
-// link for browsers.
+// The handlers of the requests of browsers that render (/join/…). The handlers send the renderer
+// and the blobs (byte arrays) of scenes. They receive bands: ranges of rows of an image, which were
+// leased to a browser (given to it for a limited time). Only the request for the renderer needs no
+// secret. All others need the secret of the link by which browsers join.
 
 #include <algorithm>
 #include <atomic>
@@ -50,8 +51,8 @@ HttpReply too_many_transfers() {
 }
 
 /// Reads a band from the body: the length of its header, the header, the pixels. PERMISSION_DENIED:
-/// it was not leased to this browser. INVALID_ARGUMENT: it is malformed or cut off.
-/// RESOURCE_EXHAUSTED: `memory`, the budget for bands, has no space for it.
+/// the band was not leased to this browser. INVALID_ARGUMENT: the band is malformed or cut off.
+/// RESOURCE_EXHAUSTED: `memory`, the budget for bands, has no space for the band.
 absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases,
                                      MemoryBudget& memory) {
   BandIntake intake(memory);

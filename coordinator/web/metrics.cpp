@@ -1,4 +1,4 @@
-// Writes each figure of the farm as lines of Prometheus's text format.
+// Writes metrics of the farm in Prometheus's text format, with one line for each value.
 
 #include "coordinator/web/metrics.h"
 
@@ -27,7 +27,7 @@ std::string labels_of(const WorkerView& worker) {
 /// Builds the text: each metric with its help, and the lines of its values.
 class Text {
  public:
-  /// Begins a metric; the following lines are its values.
+  /// Begins a metric. Calls of line() add its values.
   void gauge(const char* name, const char* help) {
     name_ = name;
     absl::StrAppend(&text_, "# HELP ", name, " ", help, "\n# TYPE ", name, " gauge\n");

@@ -10,9 +10,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Formats the metrics. A metric of jobs, such as bandsaw_job_error, has one line for each job that
-/// is not over. If the metric's value for a job is unknown, the job has no line. `free_bytes`: free
-/// space of the coordinator's disk.
+/// Formats the metrics. A metric of jobs, such as bandsaw_job_error, has a line for each unfinished
+/// job, but no line for a job for which the value is unknown. `free_bytes`: free space of the
+/// coordinator's disk.
 std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerView>& workers,
                     std::uint64_t free_bytes, const std::string& version);
 

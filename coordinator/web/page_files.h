@@ -1,7 +1,8 @@
 #pragma once
 
-// The files of the dashboard's page, which the build embeds into the program (embed.cmake). These
-// are the files of coordinator/web/page and files that the build makes.
+// The files of the dashboard's page, which the build embeds into the program (embed.cmake). They
+// are the files of coordinator/web/page, and two downloads: the add-on for Blender and the module
+// for Python.
 
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
@@ -14,6 +15,7 @@ struct PageFile {
   absl::string_view bytes;
 };
 
+/// Returns all files, sorted by their paths.
 absl::Span<const PageFile> page_files();
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,4 @@
-// The handlers of the page's files and of the login.
+// The handlers of the requests for the files of the dashboard's page, and for login and logout.
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -19,6 +19,8 @@ constexpr char kJoinPolicy[] =
     "img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors "
     "'none'";
 
+/// Returns the path of a file in its address. "index.html" has the path "/", and "join.html" has
+/// the path "/join".
 std::string path_of(const PageFile& file) {
   if (file.name == "index.html") {
     return "/";
@@ -46,7 +48,7 @@ void add_login(Router& router, Access& access) {
   });
   router.post("/api/login", [&access](const HttpRequest& request, const HttpBody& body) {
     web::Login login;
-    HttpReply done = reply(web::Login());
+    HttpReply done = reply(web::Login());  // an empty message; log_in() adds the cookie
     absl::Status status = read_json(body, login);
     if (status.ok()) {
       status = access.log_in(request, login.secret(), done);

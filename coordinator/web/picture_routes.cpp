@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint32_t kMinPictureSide = 64;
 constexpr std::uint32_t kMaxPictureSide = 2048;
 
-/// Returns the requested side of a picture, in pixels, rounded up to one of a few sizes, so that
-/// few pictures are made.
+/// Returns the limit of a picture's width and height that the request asks for, in pixels. The
+/// result is rounded up to one of a few sizes, so that few different pictures are made.
 std::uint32_t side_of(const HttpRequest& request) {
   std::uint32_t wanted = 0;
   if (!absl::SimpleAtoi(request.parameter("side"), &wanted)) {
@@ -38,7 +38,8 @@ HttpReply send(const absl::StatusOr<Pictures::Bytes>& bytes, const char* type) {
 
 using Make = std::function<absl::StatusOr<Pictures::Bytes>(JobId)>;
 
-/// Adds the handler of a finished job's file, /api/jobs/ID/`what`.`suffix`, which `make` makes.
+/// Adds the handler of /api/jobs/ID/`what`.`suffix`, a file of a finished job. `make` returns the
+/// bytes of the file.
 void add_file(Router& router, const std::string& what, const std::string& suffix, const char* type,
               Make make) {
   router.get(absl::StrCat("/api/jobs/*/", what, ".", suffix),

@@ -1,5 +1,5 @@
-// Makes pictures one at a time. The last pictures are kept, within a limit of bytes, for requests
-// that come within a second.
+// Makes pictures one at a time. The pictures that were used last are kept, within a limit of bytes,
+// for further requests.
 
 #include "coordinator/web/pictures.h"
 
@@ -57,8 +57,8 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   const absl::StatusOr<Bytes> file =
       picture.ok() ? encoded(*std::move(picture), format) : picture.status();
   if (!file.ok()) {
-    // After the last band has arrived, no picture can be made until the result is on disk. The
-    // last picture is returned then.
+    // After the last band has arrived, no picture can be made until the result is on disk. Until
+    // then, the picture that was made last is returned.
     return found != made_.end() && !done ? absl::StatusOr<Bytes>(found->second.file) : file;
   }
   keep(key, {.file = *file,

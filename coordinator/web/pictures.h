@@ -16,21 +16,23 @@
 
 namespace bandsaw::coordinator {
 
-/// Formats the report of a finished job. Passed in by the command, which defines the format.
+/// Formats the report of a finished job. `bandsaw serve` passes this function in, because the
+/// format is defined among the commands.
 using MakeReport = std::function<std::string(const JobView& job, const Image& image)>;
 
 /// Thread-safe. Only one picture is made at a time, for all clients together, so that browsers
-/// cannot take the machine's CPU from the farm.
+/// cannot take the machine's CPU from the farm. The functions that return a file fail with
+/// RESOURCE_EXHAUSTED if images that are viewed or downloaded at the same time leave too little
+/// memory.
 class Pictures {
  public:
   using Bytes = std::shared_ptr<const std::string>;
 
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
-  /// Returns a file of the job's present image, which is at most a second old. If the job is done,
-  /// it is the finished image. The image has at most `most_side` pixels per side. NOT_FOUND: there
-  /// is no such job, or no band of the job is stored. All three functions return RESOURCE_EXHAUSTED
-  /// if images that are viewed or downloaded at the same time leave too little memory.
+  /// Returns a file of the job's present image, which is at most a second old, or of the finished
+  /// image if the job is done. The image has at most `most_side` pixels per side. NOT_FOUND: there
+  /// is no such job, or no band (range of rows) of the job is stored.
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);
   /// Returns the finished image. FAILED_PRECONDITION: the job is not done. NOT_FOUND: there is no
@@ -43,10 +45,10 @@ class Pictures {
   using Key = std::tuple<JobId, std::uint32_t, ImageFormat>;  ///< job, most_side, format
   struct Made {
     Bytes file;
-    std::uint64_t samples = 0;  ///< samples of the job when it was made
+    std::uint64_t samples = 0;  ///< samples of the job when the file was made
     bool whole = false;         ///< true: the finished image
-    double at = 0;              ///< time when it was made, in seconds of a steady clock
-    std::uint64_t used = 0;     ///< number of the last call that used it
+    double at = 0;              ///< time when the file was made, in seconds of a steady clock
+    std::uint64_t used = 0;     ///< number of the last call that used the file
   };
   /// Keeps a picture, and drops the least recently used ones beyond a limit of bytes.
   void keep(const Key& key, Made made) REQUIRES(making_);

@@ -1,5 +1,5 @@
-// Converts the modules (cells) of a code that libqrencode has made. libqrencode stores one byte for
-// each module; its lowest bit is 1 if the module is dark.
+// Lets libqrencode make a code, and converts its modules (cells). libqrencode stores one byte for
+// each module. The lowest bit of this byte is 1 if the module is dark.
 
 #include "coordinator/web/qr_code.h"
 

@@ -18,7 +18,8 @@ struct QrCode {
   int side = 0;                      ///< modules
   std::vector<bool> dark;            ///< side x side, rows from the top
 
-  /// Returns false for a place outside of the code, so that a drawing may begin at -kMargin.
+  /// Returns true if the module in column `x` and row `y` is dark. Places outside of the code are
+  /// light, so that a drawing may begin at -kMargin.
   bool is_dark(int x, int y) const {
     return x >= 0 && y >= 0 && x < side && y < side && dark[static_cast<std::size_t>(y * side + x)];
   }

@@ -1,5 +1,5 @@
-// Protobuf messages become JSON with the names of the .proto file; statuses become HTTP statuses
-// with a JSON object that has the error's text.
+// Converts protobuf messages to JSON with the field names of the .proto file. An error status
+// becomes an HTTP status and a JSON object that has the error's text.
 
 #include "coordinator/web/reply.h"
 

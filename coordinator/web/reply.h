@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts messages to JSON and back, and statuses to HTTP.
+// Converts protobuf messages to JSON and back, and error statuses to HTTP responses.
 
 #include <google/protobuf/message.h>
 

@@ -1,5 +1,6 @@
-// The handlers for scenes of many files, which programs send (deploy/python/bandsaw.py): each file
-// is sent once, as a blob that stays in the store, and a scene names its files by their digests.
+// The handlers for scenes of many files. Programs send such scenes, for example by
+// deploy/python/bandsaw.py. Each file is sent once and stays in the coordinator's store as a blob,
+// a byte array named by its SHA-256. A scene names its files by these digests.
 
 #include <algorithm>
 #include <cerrno>
@@ -39,7 +40,7 @@ absl::Status too_large(const std::string& what, std::uint64_t most) {
                                                  " MiB here; `bandsaw submit` takes larger ones"));
 }
 
-/// Returns those of the digests in the body for which the store has no blob.
+/// Reads a list of digests from the body. Returns the digests for which the store has no blob.
 absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& body) {
   web::FileDigests list;
   RETURN_IF_ERROR(read_json(body, list, kMaxListBytes));

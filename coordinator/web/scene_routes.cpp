@@ -1,4 +1,4 @@
-// The handler for a scene file that a user drops on the page.
+// The handler for a scene that is sent as one file, for example by a user who drops it on the page.
 
 #include <cerrno>
 #include <cstdio>
@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::uint64_t kMaxUploadBytes = 2048ull << 20;  // of the scene file
 
-/// A temporary folder for one file: the importer can read below this folder only.
+/// A file that is received into a temporary folder of its own, because the importer, which reads
+/// the file later, can read only below the folder of the file.
 class Upload {
  public:
   Upload() = default;
@@ -33,6 +34,7 @@ class Upload {
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
 
+  /// Creates the folder and the empty file `name` in it.
   absl::Status open(const std::string& name) {
     ASSIGN_OR_RETURN(folder_, ScratchFolder::make("drop"));
     path_ = folder_->path() + "/" + name;
@@ -74,8 +76,8 @@ class Upload {
   std::FILE* file_ = nullptr;
 };
 
-/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: a
-/// file with this suffix cannot be a complete scene.
+/// Returns the name `given` without its folders, shortened, and with unsafe characters replaced.
+/// INVALID_ARGUMENT: a file with this suffix cannot be a complete scene.
 absl::StatusOr<std::string> file_name(const std::string& given) {
   constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);
@@ -94,6 +96,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
       "that needs no other file; `bandsaw submit` takes all other scenes");
 }
 
+/// Receives the scene file in the body and submits its job.
 absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const HttpRequest& request,
                                           const HttpBody& body) {
   ASSIGN_OR_RETURN(const std::string name, file_name(request.parameter("name")));

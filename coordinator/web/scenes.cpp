@@ -1,4 +1,4 @@
-// Imports a scene in the confined importer, stores its blobs in the engine, and submits the job.
+// Lets the importer (a process with few rights) read a scene and store it, and submits the job.
 
 #include "coordinator/web/scenes.h"
 

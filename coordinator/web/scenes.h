@@ -1,8 +1,9 @@
 #pragma once
 
-// Makes a job of a scene file that the dashboard has received or that belongs to the gallery. A
-// confined process, the importer, reads the file. The function that runs it is passed in
-// (ImportScene), because only the command `serve` knows where the importer is.
+// Makes a job of a scene file that the dashboard has received or that belongs to the gallery. The
+// file is read by the importer, a separate process with few rights. The function that runs the
+// importer is passed in (ImportScene), because only the command `serve` knows where the importer
+// is.
 
 #include <atomic>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 
-// A connection as a stream for Boost.Asio and Boost.Beast. Their operations wait for the socket on
-// an io_context and do not block a thread. Only browser_sockets.cpp includes this file, because the
-// headers of Boost compile slowly.
+// A connection as a stream for Boost.Asio and Boost.Beast. The operations of the stream do not
+// block a thread: they wait for the socket on an io_context. Only browser_sockets.cpp includes this
+// file, because the headers of Boost compile slowly.
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -102,7 +102,7 @@ class SocketStream {
  private:
   using Socket = boost::asio::posix::stream_descriptor;
 
-  /// Returns the first buffer of the sequence that is not empty; an empty one if there is none.
+  /// Returns the first buffer of the sequence that is not empty; an empty buffer if all are empty.
   template <class Buffer, class Buffers>
   static Buffer first_filled(const Buffers& buffers) {
     for (const Buffer buffer : boost::beast::buffers_range_ref(buffers)) {
@@ -149,8 +149,8 @@ class SocketStream {
   Socket socket_;
 };
 
-// Beast calls the following functions when it closes a WebSocket; it finds them by the type of
-// their argument.
+// Beast calls the following functions when it closes a WebSocket. The compiler finds them by the
+// type SocketStream of their argument.
 
 inline void beast_close_socket(SocketStream& stream) { stream.close(); }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// TLS of the dashboard, with the farm's own certificate.
+// Prepares OpenSSL for the dashboard's TLS connections, with the farm's own certificate.
 
 #include <openssl/ssl.h>
 
@@ -16,7 +16,8 @@ struct FreeTlsContext {
 };
 using TlsContext = std::unique_ptr<SSL_CTX, FreeTlsContext>;
 
-/// Creates a context for TLS 1.2 or later. INVALID_ARGUMENT: key or certificate cannot be used.
+/// Creates a server's context for TLS 1.2 or later, with the certificate and the key of `identity`.
+/// INVALID_ARGUMENT: the certificate or the key cannot be used.
 absl::StatusOr<TlsContext> make_tls_context(const link::Identity& identity);
 
 }  // namespace bandsaw::coordinator

@@ -45,8 +45,9 @@ constexpr std::optional<Machine> machine_named(absl::string_view name) {
   return std::nullopt;
 }
 
-/// The program is held in memory, so that the bytes that are handed out have this digest even if
-/// the file changes. It contains no secret.
+/// The program of one architecture, read from its file. It is held in memory, so that `digest`
+/// remains the digest of the bytes that are handed out even if the file changes. The program
+/// contains no secret.
 struct WorkerProgram {
   Machine machine = kThisMachine;
   std::string version;  ///< as the program's bytes state it (proto/wire/worker_mark.h)
