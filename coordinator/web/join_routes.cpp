@@ -143,7 +143,7 @@ HttpReply program_reply(const BrowserProgram& program, const HttpRequest& reques
   if (program.bytes.empty()) {
     return refuse(absl::NotFoundError(
         "the renderer for browsers is not installed on the host: install share/bandsaw/browser "
-        "beside its programs, and start the coordinator again"));
+        "beside Bandsaw's programs, and start the coordinator again"));
   }
   const bool compressed = !program.compressed.empty() && accepts_brotli(request);
   const std::string tag = absl::StrCat("\"", program.tag, compressed ? "-br" : "", "\"");

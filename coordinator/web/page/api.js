@@ -1,6 +1,8 @@
-// The dashboard's HTTP requests to the coordinator. A failure is thrown as an Error whose message is a
-// sentence; if a login is needed, its property `login` is true.
+// The dashboard's HTTP requests to the coordinator. If a request fails, an Error is thrown, whose
+// message is a sentence. If a login is needed, the property `login` of the Error is true.
 
+/// Returns a successful response. For any other response, throws the error that the coordinator
+/// reports.
 async function answer(response) {
   if (response.ok) return response;
   const problem = await response.json().catch(() => ({}));
@@ -9,6 +11,7 @@ async function answer(response) {
   throw error;
 }
 
+/// Sends a request and returns the successful response. `options`: as for fetch().
 async function call(path, options) {
   let response;
   try {
@@ -19,9 +22,11 @@ async function call(path, options) {
   return answer(response);
 }
 
+/// Returns the JSON of the answer to a GET request.
 export const get = async (path) => (await call(path)).json();
 
-/// Returns the JSON of the answer. `body`: a File, or an object that is sent as JSON.
+/// Returns the JSON of the answer to a POST request. `body`: a File, or an object that is sent as
+/// JSON.
 export async function post(path, body = {}) {
   const isFile = body instanceof Blob;
   const options = {method: "POST", headers: {"X-Bandsaw": "1"}, body: isFile ? body : JSON.stringify(body)};

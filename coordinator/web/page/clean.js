@@ -15,7 +15,7 @@ const hasLight = (status) =>
 /// Returns a sentence for the user. `state`: a CleanPicture of proto/web.proto.
 function words(state) {
   switch (state.state) {
-    case "guides": return `The farm renders the guides of the clean picture: ${percent(state.fraction)}`;
+    case "guides": return `The farm renders the images that the denoiser needs: ${percent(state.fraction)}`;
     case "filtering": return "The noise is being removed …";
     case "ready": return `Estimated error: ${percent(state.relative_rmse_raw)} as rendered, ${percent(state.relative_rmse_clean)} clean`;
     case "failed": return `The picture was not cleaned: ${state.reason}`;
@@ -23,9 +23,10 @@ function words(state) {
   }
 }
 
-/// Adds the clean picture to a job's page. `raw`: the frame with the picture as rendered. Returns
-/// {pictures, frame, element, update}: an element with both frames, the frame of the clean picture,
-/// the switch between them, and a function that shows the state of a job.
+/// Makes the parts of a job's page that show the clean picture. `raw`: the page's element that shows
+/// the picture as rendered. Returns an object: `pictures` is an element with `raw` and the clean picture
+/// in it, `frame` is the element that shows the clean picture, and `element` is the switch. The function
+/// update(status) shows the state of the job.
 export function cleaning(raw) {
   let mode = "raw";
   let job = 0;

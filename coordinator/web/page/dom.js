@@ -19,7 +19,8 @@ export function text(element, value) {
   if (element.textContent !== value) element.textContent = value;
 }
 
-/// Loads a picture from an address, unless the element has it already. If that fails, the next call tries it again.
+/// Loads a picture from the address `source`, unless the element `img` shows it already. If the loading fails, the
+/// next call loads the picture again.
 export function load(img, source) {
   if (img.getAttribute("src") === source) return;
   img.onerror = () => img.removeAttribute("src");
@@ -27,8 +28,9 @@ export function load(img, source) {
 }
 
 /// Shows a list: `parent` has one part for each item, in the same order. `parts`: a Map from the keys of the
-/// items to the parts of the last call. For a new item, make(item) returns its part, {element, update(item),
-/// leave?()}. Every part is updated with its item. A part whose item is no longer in the list is removed.
+/// items to the parts of the last call. keyOf(item) returns the key of an item. For a new item, make(item)
+/// returns its part, {element, update(item), leave?()}. Every part is updated with its item. If the list no
+/// longer has an item, the part of this item is removed and its function leave() is called.
 export function keyed(parent, parts, items, keyOf, make) {
   const seen = new Set();
   items.forEach((item, i) => {
@@ -48,6 +50,7 @@ export function keyed(parent, parts, items, keyOf, make) {
   }
 }
 
+// Returns a number as text with n significant digits.
 const digits = (value, n) => value.toLocaleString("en", {maximumSignificantDigits: n});
 
 export const percent = (fraction) => `${digits(100 * fraction, 2)} %`;

@@ -6,6 +6,7 @@ import {attempt, say} from "./notice.js";
 
 let quality = "samples=64";  // the part of the request that sets when the render stops
 
+/// Sends a scene file to the coordinator, which renders it, and shows the page of the new job.
 async function render(file) {
   say(`Reading ${file.name}…`, {stays: true});
   const submitted = await attempt(() => post(`/api/scenes?name=${encodeURIComponent(file.name)}&${quality}`, file));
@@ -39,8 +40,8 @@ export function takeDrops() {
   const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a scene to render it: a .zip with its files, .glb, .textproto, .pbrt or .xml"));
   document.body.append(veil);
   const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
-  // Number of elements that the dragged file has entered and not left. It is above 0 as long as the file is
-  // over the window, because the file enters an element before it leaves the last one.
+  // Number of elements that the dragged file has entered and not left. The number is above 0 as long as the
+  // file is over the window, because the file enters the next element before it leaves the present one.
   let depth = 0;
   const on = (name, action) => window.addEventListener(name, (event) => {
     if (!hasFiles(event)) return;

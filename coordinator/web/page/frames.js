@@ -1,12 +1,12 @@
-// Shows the frames of a job: one frame large, and a strip of all frames with their states. It can
-// play the frames that are done.
+// Shows the frames of a job that renders an animation: one frame large, and a strip of all frames
+// with their states. The frames that are done can be played like a film.
 
 import {get, post} from "./api.js";
 import {el, load, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Maximum number of frames in the strip. If there are more, the strip has only every second, every
-/// third and so on.
+/// Maximum number of frames in the strip. If the job has more frames, the strip shows only every
+/// n-th frame.
 const most = 600;
 const stripSide = 128;   // pixels of a picture in the strip
 const stageSide = 1024;  // pixels of the large picture
@@ -14,7 +14,8 @@ const stageSide = 1024;  // pixels of the large picture
 const stateOf = (frame) => frame.state.replace("FRAME_STATE_", "").toLowerCase();
 const source = (frame, side) => `/api/jobs/${frame.job}/preview.png?side=${side}&at=end`;
 
-/// Returns the part of the strip for one frame; `choose` is called with the frame's number.
+/// Returns the part of the strip for one frame: {element, update(frame)}. A click on it calls
+/// `choose` with the frame's number.
 function cell(frame, choose) {
   const img = el("img", {alt: "", loading: "lazy", hidden: true});
   const element = el("button.frame", {onclick: () => choose(frame.frame), "aria-label": `Frame ${frame.frame}`},
@@ -142,7 +143,8 @@ export function frames(id) {
         }
       }
       for (const one of show_cells) cells.get(one)?.update(known.get(one));
-      // If no large picture was loaded yet, or it could not be loaded, shows a frame that is done.
+      // Shows a frame that is done if no large picture was loaded yet, or if its loading has
+      // failed.
       if (!img.hasAttribute("src") && done().length > 0) show(chosen ?? done()[0]);
       play.disabled = done().length < 2;
       retry.hidden = (status.frames?.failed ?? 0) === 0;

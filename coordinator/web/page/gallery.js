@@ -1,12 +1,13 @@
-// The view of the gallery, the installed scenes: a click renders one, and its card shows the render time.
+// The view of the gallery, the installed scenes. A click on a scene renders it. Then the scene's card shows the render
+// time.
 
 import {get, post} from "./api.js";
 import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
 import {attempt} from "./notice.js";
 import {preview} from "./picture.js";
 
-/// Returns the image width, in pixels, for this screen: the largest step that is not wider than the
-/// screen, at least 320. So a phone does not load a large image.
+/// Returns the width of images for this screen, in pixels: the largest of some usual widths that is
+/// not larger than the screen's width, at least 320. So a phone does not load a large image.
 function screenWidth() {
   const wanted = Math.min(screen.width, window.innerWidth) * devicePixelRatio;
   return [320, 480, 640, 800, 1024, 1280, 1600, 1920].findLast((width) => width <= wanted) ?? 320;
@@ -19,6 +20,7 @@ let samples = "16";
 const groups = {"": "Scenes", books: "The books", hard_light: "Hard light", study: "The phone study"};
 const groupOf = (name) => (name.includes("/") ? name.split("/")[0] : "");
 
+/// Returns the title of a scene: "Final scene" for the name "books/final_scene".
 function titleOf(name) {
   const words = name.split("/").pop().replaceAll("_", " ");
   return words[0].toUpperCase() + words.slice(1);

@@ -1,4 +1,4 @@
-// The view of one job: its figures, and the commands on it.
+// The view of one job: its picture or its frames, its figures, and the buttons that pause or cancel it.
 
 import {get, post} from "./api.js";
 import {count, duration, el, goal, isOver, percent, rate, stateOf, text} from "./dom.js";
@@ -7,7 +7,7 @@ import {attempt} from "./notice.js";
 import {picture} from "./picture.js";
 import {plot} from "./plot.js";
 
-/// Returns the number of frames in all states.
+/// Returns the number of all frames of a job. `of`: the numbers of frames in each state.
 const allFrames = (of) => of.expected + of.waiting + of.rendering + of.done + of.failed;
 
 /// Returns the figures of a job: {name: text}. A figure whose text is empty is not shown.
@@ -56,7 +56,8 @@ function actions(id) {
   };
 }
 
-/// Returns the view of the job `id`: {element, update(), leave()}, as main.js uses it.
+/// Returns the view of the job `id`: {element, update(), leave()}. update() fetches the job from the
+/// coordinator and shows it. leave() must be called when the page shows another view.
 export function jobView(id) {
   const title = el("h1");
   const state = el("span.state");

@@ -1,4 +1,5 @@
-// The page /join, for browsers that render: asks the user to start, then shows what this device renders.
+// The page /join, for browsers that render for a farm. It asks the user to start, then shows what this
+// device renders.
 
 import {count, duration, text} from "./dom.js";
 import {Picture} from "./join_picture.js";
@@ -36,8 +37,9 @@ async function about() {
   return answer;
 }
 
-/// Keeps the screen awake from update(true) to update(false). The browser ends its wake lock when
-/// the page is hidden, so update() is called again whenever the page is hidden or shown.
+/// Keeps the screen awake from update(true) to update(false), by a wake lock of the browser. The
+/// browser ends the lock when the page is hidden. So update() must be called again whenever the page
+/// is hidden or shown.
 class Awake {
   #wanted = false;
   #lock = null;
@@ -61,7 +63,7 @@ async function work() {
   try {
     module = await import("/join_engine.js");
   } catch {
-    problem("The renderer is missing", "This coordinator has no renderer for browsers: install a version of Bandsaw that has it, and start the coordinator again.");
+    problem("The renderer is missing", "This coordinator has no renderer for browsers: install a version of Bandsaw that has this renderer, and start the coordinator again.");
     return;
   }
   const picture = new Picture($("picture"), $("no-picture"));
@@ -131,7 +133,7 @@ async function enter() {
   try {
     const {renderer} = await about();
     if (!renderer) {
-      problem("The renderer is missing", "The renderer for browsers is not installed on the host: install share/bandsaw/browser beside its programs, and start the coordinator again.");
+      problem("The renderer is missing", "The renderer for browsers is not installed on the host: install share/bandsaw/browser beside Bandsaw's programs, and start the coordinator again.");
       return;
     }
   } catch (error) {

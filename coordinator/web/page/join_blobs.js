@@ -16,8 +16,8 @@ export class Final extends Error {}
 
 const hex = (bytes) => Array.from(bytes, (one) => one.toString(16).padStart(2, "0")).join("");
 
-/// Returns the error in the body of an HTTP answer. If the body is not {"error": sentence} in JSON,
-/// the whole body is the error.
+/// Returns the sentence that reports an error in the body of an HTTP answer. If the body is not
+/// {"error": sentence} in JSON, returns the whole body.
 export function sentence(text) {
   try {
     return JSON.parse(text).error;
@@ -70,8 +70,8 @@ export class Blobs {
     }
   }
 
-  /// Makes requests until the blob has arrived with the right digest. Parameters and errors as
-  /// get().
+  /// Makes requests until the blob has arrived with the right digest. The parameters and the errors
+  /// are those of get().
   async fetch(digest, wanted, took) {
     const backoff = new Backoff();
     for (let wrong = 0;;) {
@@ -89,9 +89,9 @@ export class Blobs {
     }
   }
 
-  /// Makes one request and returns the bytes. `again`: the browser's cache is not used, because it
-  /// has wrong bytes. Throws Final or LinkEnded. If the request can be repeated, throws another
-  /// Error.
+  /// Makes one request and returns the bytes. `again`: the browser's cache is not used, because the
+  /// bytes in the cache may be wrong. If a repeated request would fail too, throws Final or LinkEnded.
+  /// Otherwise throws another Error.
   async once(digest, again, took) {
     const response = await fetch(`${this.base}/join/blob/${digest}`, {headers: this.headers(), cache: again ? "reload" : "default"});
     if (response.status === 401) throw new LinkEnded(sentence(await response.text()));

@@ -1,4 +1,4 @@
-// Renders for a farm in this tab: the functions that the page /join calls. The work is done by the web worker join_session.js.
+// The functions by which the page /join lets this tab render for a farm. The web worker join_session.js does the work.
 
 const GIGABYTE = 2 ** 30;
 // Limit of the memory that scenes may take in one instance of bandsaw.wasm. It is below the limit
@@ -46,7 +46,8 @@ export function startEngine({secret, base = location.origin, cores = 1, name = "
     memory: memory(), maxInstanceBytes: MAX_INSTANCE_BYTES});
   return {
     setCores: (count) => send({call: "cores", count}),
-    /// Finishes the bands that are held, and takes no more. `why`: a sentence.
+    /// Takes no more bands (ranges of rows of an image), and finishes those that this tab has taken.
+    /// `why`: a sentence for the page and the farm.
     pause: (why = "Paused.") => send({call: "pause", why}),
     resume: () => send({call: "pause", why: null}),
     stop: () => send({call: "stop"}),

@@ -14,7 +14,8 @@ export class Pauses {
   constructor(changed) {
     this.#changed = changed;
     document.addEventListener("visibilitychange", () => this.#update());
-    // Not every browser has getBattery(), and a page has it only over HTTPS or on this machine.
+    // Not every browser has getBattery(). A browser that has it offers it only to pages that come
+    // by HTTPS or from this machine.
     navigator.getBattery?.().then((battery) => {
       const check = () => {
         this.#batteryIsLow = !battery.charging && battery.level < lowBattery;

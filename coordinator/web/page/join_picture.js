@@ -17,9 +17,9 @@ export class Picture {
     this.#note = note;
   }
 
-  /// Draws the rows [first, last) of a job's picture, if the argument has `rows`. The argument is a
-  /// state that the engine reports: {job, width, height, rows: {first, last, rgb}}. `rgb` has four
-  /// bytes for each pixel.
+  /// Draws the rows [first, last) of a job's picture. The argument is a state that join_engine.js
+  /// reports: {job, width, height, rows: {first, last, rgb}}. `rgb` has four bytes for each pixel: red,
+  /// green, blue and alpha. Draws nothing if the state has no `rows`.
   draw({job, width, height, rows}) {
     if (!rows || !width || !height) return;
     const of = `${job} ${width} ${height}`;

@@ -1,8 +1,11 @@
-// A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm;
-// join_renderer.js starts it. It answers each message {id, call, …} with {id, value}, {id, error}
-// or {id, error, fatal: true}. After `fatal` the instance cannot be used any more: it had no memory
-// left, or it has crashed. Before the first row of a scene, the renderer prepares data. After each
-// step of this preparation the web worker sends {step: true}.
+// A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm. A band is a
+// range of rows and samples of an image. A lease is the message by which the coordinator gives a band
+// to this tab.
+//
+// join_renderer.js starts the web worker. The web worker answers each message {id, call, …} with
+// {id, value}, {id, error} or {id, error, fatal: true}. After `fatal` the instance cannot be used any
+// more: it had no memory left, or it has crashed. Before the first row of a scene, the renderer
+// prepares data. After each step of this preparation the web worker sends {step: true}.
 
 import {Program} from "/join_wasm.js";
 
@@ -26,9 +29,9 @@ const calls = {
   drop({scene}) {
     program.bytes("renderer_drop_scene", renderer, scene);
   },
-  /// Renders the rows [first, last) of a lease. Returns the sums of their samples, the counters,
-  /// the rendering time, and the rows as RGBA bytes for the page if `picture` is true (otherwise
-  /// null).
+  /// Renders the rows [first, last) of the band of a lease. Returns `sums` (the sums of the samples of
+  /// each pixel), `counters` (for the coordinator), `seconds` (the rendering time) and `rgb`. If
+  /// `picture` is true, `rgb` has the rows as RGBA bytes for the page, otherwise it is null.
   render({lease, first, last, picture}) {
     const began = performance.now();
     const sums = program.bytes("renderer_render", renderer, lease, first, last).buffer;

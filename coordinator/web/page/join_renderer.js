@@ -1,9 +1,10 @@
 // One core of the tab, for join_session.js: starts a web worker with join_render.js, and keeps a
-// list of the scenes that this web worker has loaded. A scene is identified by the digest of its
-// manifest; its data come as blobs.
+// list of the scenes that this web worker has loaded. The data of a scene come as blobs, byte arrays
+// that are named by their digests. One of the blobs is the manifest, which names the others. The
+// digest of the manifest identifies the scene.
 
-// Maximum number of loaded scenes. In a sequence they are those of the present frame and of the
-// next one.
+// Maximum number of loaded scenes. While an animation is rendered, they are the scenes of the present
+// frame and of the next frame.
 const MAX_SCENES = 2;
 // Number of blobs that are fetched in advance, while the web worker copies earlier ones.
 const BLOBS_AHEAD = 4;
@@ -93,6 +94,7 @@ export class Renderer {
     return answer;
   }
 
+  /// Returns true if the scene is loaded. `scene`: the digest of its manifest.
   has(scene) {
     return this.scenes.has(scene);
   }

@@ -13,10 +13,11 @@ const RATE_OVER_S = 8;          // samplesPerSecond is the mean over this time
 const STATE_EVERY_MS = 200;     // the page gets the state at most this often
 const REPORT_CORES_MS = 1000;   // time from a change of the cores to the report
 const SILENCE_MS = 15000;       // after this silence, tests if the coordinator answers HTTP
-const ANSWER_MS = 10000;        // time limit for the answer to that request
+const ANSWER_MS = 10000;        // time limit for the HTTP answer in this test
 const FULL_DISK_MS = 5000;      // wait if the coordinator's disk is full
-// A finished band may be refused so many times with the status 403 or 409. A restarted coordinator
-// refuses it until it has leased the band to this tab again.
+// A finished band is given up if it is refused more often than this with the status 403 or 409. Some
+// refusals are normal: a restarted coordinator refuses a band until it has leased the band to this tab
+// again.
 const MAX_REFUSALS = 20;
 const LOG_LINES = 50;
 
@@ -49,8 +50,9 @@ const pieces = [];              // {began, at, samples} of the last rendered row
 const newLines = [];            // of the log, to be sent after the next heartbeat
 const lastLines = [];           // of the log, to be sent with a failed band
 
-/// The state that the page shows. Phases: "starting"; "connecting"; "waiting" (no band is held), "loading" (a scene),
-/// "rendering"; "pausing" (held bands are finished), "paused"; at the end "stopped" or "failed". `text`: a sentence about it.
+/// The state that the page shows. Phases: "starting"; "connecting"; "waiting" (this tab holds no band), "loading" (a scene),
+/// "rendering"; "pausing" (the bands that this tab holds are finished), "paused"; at the end "stopped" or "failed". `text`: a
+/// sentence about the phase.
 const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0, bandsDone: 0, samplesPerSecond: 0, job: 0, width: 0,
   height: 0, name: "", cores: 0, memoryBytes: 0};
 
@@ -113,7 +115,7 @@ function log(text) {
   }
 }
 
-/// Ends the engine. `phase`: "stopped" or "failed".
+/// Ends the engine: this tab renders no more. `phase`: "stopped" or "failed".
 function end(phase, text) {
   if (over) return;
   setPhase(phase, text);
@@ -162,7 +164,7 @@ function reconnect() {
   connect();
 }
 
-/// Updates the session after the stream has ended. Its bands are kept.
+/// Updates the session after the stream has ended. The session keeps its bands.
 function lost() {
   connected = false;
   clearInterval(beating);
@@ -170,8 +172,8 @@ function lost() {
   updatePhase();
 }
 
-/// Handles the end of the stream: ends the engine if the link has ended, otherwise connects again
-/// later. `code`, `reason`: those of the WebSocket's end; 4401 means that the link has ended.
+/// Handles the end of the stream. If the link by which this tab joined has ended, ends the engine.
+/// Otherwise connects again later. `code`, `reason`: those of the WebSocket's end; 4401 means that the link has ended.
 /// `opened`: whether the stream was open before.
 async function disconnected(code, reason, opened) {
   socket = null;
@@ -192,8 +194,8 @@ async function disconnected(code, reason, opened) {
   reconnecting = setTimeout(connect, Math.max(connectBackoff.next(), wait));
 }
 
-/// Asks the coordinator if the link still holds. If it has ended, ends the engine and returns true. If there is another answer,
-/// calls `reached` and returns false; without an answer returns false.
+/// Asks the coordinator by HTTP if the link is still valid. If the link has ended, ends the engine and returns true. If the
+/// coordinator gives any other answer, calls `reached` and returns false. Without an answer, returns false.
 async function linkEnded(reached = () => {}) {
   try {
     const answer = await fetch(`${options.base}/join/about`,

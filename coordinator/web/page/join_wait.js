@@ -20,7 +20,7 @@ export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 /// A wait that can be ended early.
 export class Alarm {
-  /// Returns after `ms`, or when ring() is called.
+  /// Returns a promise that is fulfilled after `ms` milliseconds, or earlier when ring() is called.
   wait(ms) {
     return new Promise((done) => {
       this.ring = done;

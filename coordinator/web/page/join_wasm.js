@@ -47,7 +47,7 @@ function system(memory) {
 }
 
 /// Returns the functions that the module imports. An imported function that is not known here
-/// returns NOT_SUPPORTED when it is called. `memory`, `step`: as those of system() and
+/// returns NOT_SUPPORTED when it is called. `memory`: as for system(). `step`: as for
 /// Program.start().
 function imports(module, memory, step) {
   const known = {...system(memory), step};
@@ -72,7 +72,7 @@ export class Program {
     return program;
   }
 
-  /// Returns the address of a copy of the bytes.
+  /// Copies the bytes into the memory of the instance, and returns the address of the copy.
   place(bytes) {
     const at = this.functions.bandsaw_allocate(bytes.length) >>> 0;
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
@@ -105,7 +105,8 @@ export class Program {
     return bytes;
   }
 
-  // Call `bandsaw_NAME` as run() does, and return its answer as bytes, text or parsed JSON, or throw its error.
+  // The next three functions call the function `bandsaw_NAME` as run() does. They return its answer as bytes,
+  // as text or as parsed JSON. If the answer is an error, they throw it.
   bytes(name, ...args) {
     return this.read(this.run(name, ...args));
   }

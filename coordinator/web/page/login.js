@@ -1,7 +1,9 @@
+// The form by which a user logs in to the dashboard.
+
 import {post} from "./api.js";
 import {el, text} from "./dom.js";
 
-/// Returns the form by which a user logs in to the dashboard; calls `done` after a login.
+/// Returns the element of the form. `done`: called after a login.
 export function login(done) {
   const input = el("input", {type: "password", autocomplete: "current-password", required: "", "aria-label": "Join string"});
   const wrong = el("p.bad-text", {role: "alert"});
@@ -17,7 +19,7 @@ export function login(done) {
   };
   return el("form.card.login", {onsubmit: submit},
     el("h1", {}, "Log in to the farm"),
-    el("p.soft", {}, "Paste the line of the file ", el("code", {}, "farm"), " in the coordinator's data folder, or open the link in ",
+    el("p.soft", {}, "Paste the line of the file ", el("code", {}, "farm"), " in the coordinator's data folder, or open the link in the file ",
       el("code", {}, "dashboard"), " beside it."),
     input, wrong, el("button.main", {type: "submit"}, "Log in"));
 }

@@ -1,4 +1,5 @@
-// Starts the dashboard's page: selects the view by the address after the #, and polls the coordinator for its data.
+// Starts the dashboard's page: shows the view that the address after the # names, and polls the coordinator for the data that the
+// view shows.
 
 import {get, post} from "./api.js";
 import {count, text} from "./dom.js";
@@ -35,7 +36,8 @@ function showLogin() {
   root.querySelector("input").focus();
 }
 
-/// Shows the view that the address after the # names, or the view of the jobs if it names none. Marks the view's link in the header.
+/// Shows the view that the address after the # names. If the address names no view, shows the view of the jobs. Marks the view's
+/// link in the header.
 function route() {
   const hash = routes.some(([pattern]) => pattern.test(location.hash)) ? location.hash : "#/jobs";
   for (const [pattern, make] of routes) {
@@ -92,9 +94,9 @@ function start() {
   refresh();
 }
 
-/// Logs in if the address has the secret. Then shows the page, or the form for a login. The link
-/// that `bandsaw serve` writes has the secret after the #. Browsers do not send this part of an
-/// address to a server.
+/// Logs in if the address has the users' secret. Then shows the page, or the login form if the user
+/// is not logged in. The link that `bandsaw serve` writes has the secret after the #. Browsers do not
+/// send this part of an address to a server.
 async function enter() {
   const key = location.hash.match(/^#key=(.+)$/);
   if (key) {

@@ -12,8 +12,9 @@ export function say(words, {bad = false, stays = false} = {}) {
   if (!stays && words !== "") timer = setTimeout(() => say(""), 8000);
 }
 
-/// Runs an action of the user and returns its result, or shows its error and returns null. The window receives the event
-/// `action-done`, or `login-needed` if the user has to log in.
+/// Runs an action of the user. After a success, sends the event `action-done` to the window and returns the action's
+/// result. After a failure, shows the error and returns null. If the user has to log in, sends the event `login-needed`
+/// to the window instead of showing the error.
 export async function attempt(action) {
   try {
     const result = await action();

@@ -1,4 +1,5 @@
-// Shows a job's picture and updates it as samples arrive. If the user wants it, colours show which worker rendered which rows.
+// Shows a job's picture and updates it as samples arrive. A button shows and hides colours, which tell which worker rendered
+// which rows.
 
 import {cleaning} from "./clean.js";
 import {el, isOver, load, stateOf, text} from "./dom.js";

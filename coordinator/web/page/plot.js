@@ -13,8 +13,8 @@ function draw(tag, attributes, words = "") {
   return element;
 }
 
-/// Returns the marks of an axis within [low, high]: 1, 2 and 5 times the powers of ten. If these are more than six marks, returns
-/// only the powers of ten.
+/// Returns the marks of an axis within [low, high]: 1, 2 and 5 times the powers of ten. If [low, high] has more than six such
+/// marks, returns only the powers of ten.
 function ticks(low, high) {
   const out = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power) {
@@ -29,6 +29,7 @@ function ticks(low, high) {
 /// stop at an error. `over`: there will be no more points.
 export function plot() {
   const svg = draw("svg", {class: "plot", viewBox: `0 0 ${box.width} ${box.height}`, role: "img"});
+  // A pass renders a range of samples of the whole image.
   const none = el("p.soft.small", {}, "The error is known after the second pass.");
   const element = el("section.card", {}, el("h2", {}, "Error over time"), none, svg);
   return {

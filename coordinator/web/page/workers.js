@@ -41,6 +41,7 @@ function workerCard(first) {
   };
 }
 
+/// Returns the view of the workers: {element, update(overview)}. `overview`: an Overview of proto/web.proto.
 export function workersView() {
   const list = el("ul.workers");
   const empty = el("p.empty", {hidden: true}, "No workers yet. ", el("code", {}, "bandsaw serve"),
