@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes the programs for ARM64 on this machine: installs the packages for this (deploy/install.sh arm64), builds the programs
-# of this machine's architecture and of ARM64, and runs the tests with the label arm64. The ARM64 programs are in build/arm64/bin.
+# Makes the programs for ARM64 on this machine. Installs the packages that this needs (deploy/install.sh arm64), builds the
+# programs for this machine and for ARM64, and runs the tests with the label arm64. The ARM64 programs are then in
+# build/arm64/bin.
 # Usage: deploy/arm64.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,8 +1,8 @@
-# To be sourced: functions for a bare (minimal) Debian system in a folder, for scripts that test installations on a new machine. They
-# need root and debootstrap.
+# To be sourced: functions that make and use a bare (minimal) Debian system in a folder, for scripts that test an installation as on a
+# new machine. The functions need root and debootstrap.
 # BANDSAW_MIRROR: address of the package mirror (default: http://deb.debian.org/debian).
 
-# bare_possible: succeeds if this machine can make such a system; otherwise prints the reason.
+# bare_possible: succeeds if this machine can make a bare system. Otherwise prints the reason and fails.
 bare_possible() {
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     echo "a bare Debian needs root and debootstrap" >&2
@@ -11,8 +11,8 @@ bare_possible() {
 }
 
 # bare_make ROOT RELEASE: makes the minimal system of a release (bookworm is Debian 12, trixie is
-# Debian 13) in the folder ROOT, unless ROOT contains a system already. In both cases, gives the
-# system this machine's resolv.conf and mounts its /proc and /dev/pts.
+# Debian 13) in the folder ROOT, unless ROOT contains a system already. In both cases, copies this
+# machine's resolv.conf to the system, and mounts /proc and /dev/pts in the system.
 bare_make() {
   local root=$1 release=$2
   if [ ! -e "$root/etc/debian_version" ]; then
@@ -37,8 +37,8 @@ bare_run() {
   chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb LANG=C.UTF-8 bash -euo pipefail -c "cd; $2"
 }
 
-# bare_clone ROOT: makes a fresh clone of this checkout's last commit in the system's /root/bandsaw. It replaces an older clone, whose
-# build folder is kept.
+# bare_clone ROOT: makes a fresh clone of this checkout's last commit in the system's /root/bandsaw. The new clone replaces an older
+# one, but keeps the older clone's build folder.
 bare_clone() {
   local clone=$1/root/bandsaw kept=$1/root/build
   [ ! -e "$clone/build" ] || { rm -rf "$kept"; mv "$clone/build" "$kept"; }

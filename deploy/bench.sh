@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures Bandsaw on this machine: the speed of its kernel, which traces rays, against Embree; the error of images against
 # time; the growth of time and memory with the size of a scene; the efficiency against Cycles; and the cost of each feature
-# of a scene. --quick leaves out the last two, and takes fewer meshes and samples.
+# of a scene. --quick leaves out Cycles and the cost of features, and takes fewer meshes and samples.
 # Usage: deploy/bench.sh [--quick] [FOLDER]    (default out/bench; about a quarter of an hour on two cores, --quick: two minutes)
 # Writes to the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
 # Embree's columns are included if libembree-dev is installed, and Cycles' lines if blender is installed.

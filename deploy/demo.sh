@@ -3,7 +3,7 @@
 # scene with a real model and writes the picture.
 # Usage: deploy/demo.sh [FOLDER]
 #   FOLDER: where the picture, the scene and the logs are written (default: out/demo)
-# BANDSAW_BUILD=DIR: use that build; nothing is installed or built.
+# BANDSAW_BUILD=DIR: the build to use. If it is set, nothing is installed or built.
 # BANDSAW_DEMO_SAMPLES=N: samples per pixel (default: 64).
 set -euo pipefail
 cd "$(dirname "$0")/.."

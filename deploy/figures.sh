@@ -5,7 +5,7 @@
 # strip: the pictures of the main README, each a file of its own, WIDTH pixels wide (default: 480).
 # sheet: one picture with thumbnails of all scenes of the gallery, or of the SCENEs. Each thumbnail is at most WIDTH pixels wide
 #   (default: 160). Prints the names of the scenes in each row.
-# BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
+# BANDSAW_BUILD=DIR: the build to use (default: build/release).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:-}
@@ -32,7 +32,8 @@ shape { quad { corner: [$3, $4, 0]  u: [$5, 0, 0]  v: [0, $6, 0] }  material: "m
 SCENE
 }
 
-# Renders OUT, an image of WIDTH x HEIGHT pixels: the quads in the file $work/panel before a background of GREY. A scene unit is a pixel.
+# Renders the quads in the file $work/panel, before a background of GREY, to the image OUT of WIDTH x HEIGHT pixels. A scene unit is a
+# pixel.
 panel() { # OUT WIDTH HEIGHT GREY
   cat - "$work/panel" >"$work/panel.textproto" <<SCENE
 camera { position: [$(awk "BEGIN { print $2 / 2 \", \" $3 / 2 }"), 1]  rotate { axis: [0, 1, 0]  degrees: 0 }
@@ -46,7 +47,7 @@ SCENE
 }
 
 # Renders OUT, a scene that shows the pictures side by side, pixel for pixel, GAP pixels apart. A
-# PICTURE is FILE or FILE:FROM:TO, where FROM and TO are fractions of its width.
+# PICTURE is FILE, or FILE:FROM:TO for a part of it. FROM and TO are fractions of the picture's width.
 side_by_side() { # OUT GAP PICTURE...
   local out=$1 gap=$2 x=0 number=0 height file from to wide
   height=$(height_of "$work/${3%%:*}.png")
@@ -104,6 +105,7 @@ figure_strip() {
   done
 }
 
+# Renders a thumbnail of each scene and puts the thumbnails into rows of 8. Without a SCENE, takes all scenes of the gallery.
 figure_sheet() { # [SCENE...]
   local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
   if [ ${#scenes[@]} = 0 ]; then

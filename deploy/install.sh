@@ -1,6 +1,10 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
 # Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm
+#   build    what building the programs needs
+#   demo     the list `build`, and the models of deploy/demo.sh
+#   packages the list `build`, and what making Debian packages needs in addition
+#   test     the list `demo`, and what the tests need in addition
 #   browser  the list `test`, and what the tests with the label browser need in addition, 700 MB
 #   blender  the list `test`, and what the tests with the label blender need in addition, 700 MB
 #   clang    the list `test`, and what the presets clang and fuzz need in addition
@@ -46,9 +50,9 @@ case "${1:-}" in
   *) echo "usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm" >&2; exit 2 ;;
 esac
 
-# installed PACKAGE: succeeds if the package is installed. It may be installed for several
-# architectures at once. PACKAGE may end in :ARCHITECTURE; without it, this machine's architecture
-# counts.
+# installed PACKAGE: succeeds if the package is installed. A package may be installed for several
+# architectures at once. If PACKAGE ends in :ARCHITECTURE, it must be installed for this one,
+# otherwise for this machine's architecture.
 architecture=$(dpkg --print-architecture)
 installed() {
   local wanted=$architecture

@@ -1,5 +1,5 @@
 # To be sourced: functions that start a farm on loopback for a script, with the programs on PATH. The farm ends with the script. Then
-# the folder $scratch is removed, which contains $data, the coordinator's folder.
+# the folder $scratch is removed. It contains $data, the coordinator's data folder.
 scratch=$(mktemp -d)
 data=$scratch/farm
 pids=()

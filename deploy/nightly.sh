@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests that are too long for CI, in parts: every label of CTest, sanitizers, builds by clang, Debian 12 and 13, ARM64, fuzzing
-# and more. It continues after a part that fails, and writes a table that says of each part whether it passed, failed or was skipped.
-# Exit 1: a part in the table failed.
+# and more. The script continues after a part that fails, and writes a table with the result of each part: passed, failed or skipped.
+# Exit status 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
 #   --continue: keeps the rows of the table that an earlier run wrote to FOLDER, so that the runs of several nights add up to one table.
 #      Each row states its commit. If PARTs are given, exactly these run, whether they have a row or not. If none is given, the parts
@@ -75,7 +75,8 @@ part_asan-ubsan() {
   preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'
 }
 
-# The system's libraries are not built for ThreadSanitizer, so it does not see their locks. Therefore it ignores their accesses to memory.
+# The system's libraries are not built for ThreadSanitizer, which therefore does not see the libraries' locks. So the option
+# ignore_noninstrumented_modules lets it ignore the libraries' accesses to memory.
 # Two groups of tests are left out: one reads JSON into protobuf's Struct, whose layout in the library differs from that in a program
 # built for ThreadSanitizer; one starts a worker without TSAN_OPTIONS and compares its last message.
 part_tsan() {

@@ -5,7 +5,7 @@
 # --worker FILE: the program bandsaw-worker of a build for another architecture. It gets a package of its own, bandsaw-worker-arm64 or
 # bandsaw-worker-amd64. With this package, a coordinator on the architecture of this build hands out FILE to workers of the other
 # architecture.
-# BANDSAW_BUILD=DIR: use that build; nothing is installed or built.
+# BANDSAW_BUILD=DIR: the build to use. If it is set, nothing is installed or built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage() { echo "usage: deploy/packages.sh [--try] [--worker FILE]... [FOLDER]" >&2; exit 2; }
@@ -42,7 +42,7 @@ own=$(machine "$build/bin/bandsaw-worker")
 machines=("$own")
 for worker in "${workers[@]}"; do
   machine=$(machine "$worker")
-  [ "$machine" != "$own" ] || { echo "packages.sh: $worker is for $own, as the packages are" >&2; exit 1; }
+  [ "$machine" != "$own" ] || { echo "packages.sh: $worker is for $own, the architecture of this build; --worker needs a program for another architecture" >&2; exit 1; }
   place=$build/lib/bandsaw/bandsaw-worker-$machine
   [ "$worker" -ef "$place" ] || install -D "$worker" "$place"
   [ "$machine" = aarch64 ] && package=bandsaw-worker-arm64 || package=bandsaw-worker-amd64

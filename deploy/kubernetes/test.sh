@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks the files of this folder without a cluster: kustomize builds them, values that must agree are equal, and the programs accept
-# the options.
+# Checks the files of this folder without a cluster: that kustomize can build them, that values that must agree are equal, and that the
+# programs accept the options in the files.
 # Exit status 77: kubectl is not installed.
 # Usage: deploy/kubernetes/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail

@@ -10,8 +10,8 @@
     image = job.image()
 
 This one file needs Python 3.8 or later and its standard library. With numpy, `Image.array()` is an
-array, and images are converted faster. The farm's coordinator must have its dashboard on
-(`bandsaw serve --web 0.0.0.0:8787`), because this module speaks its HTTP requests.
+array, and images are converted faster. The farm's coordinator must run its dashboard
+(`bandsaw serve --web 0.0.0.0:8787`), because this module sends HTTP requests to the dashboard.
 """
 
 import array
@@ -149,12 +149,12 @@ class Farm:
     # ---- requests ----
 
     def _connect(self, address, timeout):
-        """Returns an open connection, over which nothing was sent. `timeout`: seconds. The
-        connection is plain HTTP if the farm has no certificate, or if `address` is on loopback and
-        is the dashboard's address in the string. Any other loopback address may be the end of a
-        tunnel to a dashboard with or without TLS. For it, TLS is tried first, then plain HTTP. For
-        an address that is not on loopback, TLS is used. Raises OSError if the connection fails,
-        NoFarm if the certificate is that of another farm."""
+        """Returns an open connection to `address`, a pair (host, port), over which nothing was sent.
+        `timeout`: seconds. Uses plain HTTP if the farm has no certificate. Otherwise uses TLS for an
+        address that is not on loopback, and plain HTTP for a loopback address that the join string
+        names as the dashboard's. Any other loopback address may be the end of a tunnel to a
+        dashboard with or without TLS, so TLS is tried first, then plain HTTP. Raises OSError if the
+        connection fails, NoFarm if the certificate is that of another farm."""
         host, port = address
         loopback = _is_loopback(host)
         if self._join.certificate is not None and not (loopback and address == self._join.web):
@@ -277,6 +277,8 @@ class Farm:
             raise
         return job.clean() if denoise else job.image()
 
+    # Sends the files that the farm does not have. `files`: from names to bytes or paths; `digests`: from
+    # names to SHA-256; `on_progress`: as for submit().
     def _send_missing(self, files, digests, on_progress):
         by_digest = {digest: files[file] for file, digest in digests.items()}
         missing = self.request_json("POST", "/api/files/missing", {"sha256": sorted(by_digest)}).get("sha256", [])
@@ -309,6 +311,7 @@ def _early_reply(connection):
         return None
 
 
+# Returns the reason of a connection's error in a few words.
 def _reason(error):
     if isinstance(error, socket.timeout):
         return "no answer in time"
@@ -402,10 +405,12 @@ def _below(folder, beside, found, or_last_part):
     return []
 
 
+# Returns the size of a file in bytes. `content`: the file's bytes or its path.
 def _size(content):
     return len(content) if isinstance(content, (bytes, bytearray, memoryview)) else os.path.getsize(content)
 
 
+# Yields the bytes of a file in pieces of at most `size` bytes. `content`: as for _size().
 def _pieces(content, size=1 << 20):
     if isinstance(content, (bytes, bytearray, memoryview)):
         view = memoryview(content)
@@ -483,8 +488,8 @@ def _duration(seconds):
 
 
 class Job:
-    """A job of a farm. `number`: its number there; `warnings`: sentences that name the things that
-    the import left out."""
+    """A job of a farm. `number`: the job's number on the farm; `warnings`: sentences that name the
+    things that the import of the scene left out."""
 
     def __init__(self, farm, number, warnings=()):
         self.farm, self.number, self.warnings = farm, number, list(warnings)
@@ -505,9 +510,9 @@ class Job:
 
     def progress(self, interval=0.5, patience=60.0, stop=None):
         """Yields a Progress about every `interval` seconds until the job is over. While the coordinator cannot be
-        reached, it yields Progress with state "lost" and tries again for `patience` seconds, then raises NoFarm. Raises
-        BandsawError if the job failed or was cancelled. `stop`: a function that is called often; the iteration ends when
-        it returns True."""
+        reached, progress() tries again for `patience` seconds and yields a Progress with the state "lost", then raises
+        NoFarm. Raises BandsawError if the job failed or was cancelled. `stop`: a function that is called often. The
+        iteration ends when `stop` returns True."""
         loss, last = _Loss(patience), None
         while stop is None or not stop():
             try:
@@ -547,10 +552,12 @@ class Job:
 
     def clean(self, on_state=None, interval=0.3, patience=60.0, stop=None):
         """Returns the finished image without its noise (denoised), an Image. The farm renders the guides that the denoiser needs (images of the
-        albedo and the shape of the surfaces), then the coordinator filters; image() still returns the image as rendered. `on_state`: a function
-        of the state of clean_state(), called about every `interval` seconds; the state of its last call has the errors. `stop`: a function that is called often; None is returned
-        soon after it returns True. While the coordinator cannot be reached, this tries again for `patience` seconds, then raises NoFarm. Raises
-        Refused if the job is not done, or if its image cannot be cleaned or is too large; BandsawError if the cleaning fails."""
+        albedo and the shape of the surfaces), then the coordinator filters the image. image() still returns the image as rendered.
+
+        `on_state`: a function of the dictionary that clean_state() returns, called about every `interval` seconds. In its last call, the
+        dictionary has the errors. `stop`: a function that is called often. Soon after `stop` has returned True, clean() returns None. While the
+        coordinator cannot be reached, clean() tries again for `patience` seconds, then raises NoFarm. Raises Refused if the job is not done, or
+        if its image cannot be cleaned or is too large. Raises BandsawError if the cleaning fails."""
         loss = _Loss(patience)
         while stop is None or not stop():
             try:
@@ -624,6 +631,7 @@ class _Loss:
         return now - self._since > self._patience
 
 
+# Waits until `seconds` have passed or stop() returns True.
 def _wait(seconds, stop):
     end = time.monotonic() + seconds
     while time.monotonic() < end and (stop is None or not stop()):

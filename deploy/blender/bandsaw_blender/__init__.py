@@ -1,4 +1,5 @@
-"""Bandsaw for Blender: the add-on's preferences, settings and panels, and its registration. engine.py renders."""
+"""The Blender add-on of Bandsaw, a render farm. This file has the add-on's preferences, settings and panels, and registers the add-on. The
+rendering is in engine.py."""
 
 bl_info = {
     "name": "Bandsaw", "description": "Renders on all machines of a Bandsaw farm", "author": "Bandsaw", "version": (0, 1, 0), "blender": (3, 4, 0),
@@ -15,7 +16,7 @@ class BandsawPreferences(bpy.types.AddonPreferences):
 
     farm: bpy.props.StringProperty(
         name="Farm", subtype="PASSWORD",
-        description="The users' join string (bsw1-f-…): the line in the file `farm` of the coordinator's data folder, or the name of a file that has it")
+        description="The users' join string (bsw1-f-…): the line in the file `farm` of the coordinator's data folder, or the name of a file that contains the string")
     web: bpy.props.StringProperty(
         name="Dashboard", description="HOST:PORT of the coordinator's dashboard. Empty: the address in the farm's string")
 

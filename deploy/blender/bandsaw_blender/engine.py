@@ -161,8 +161,8 @@ class BandsawEngine(bpy.types.RenderEngine):
             self.end_result(result, cancel=not done and self.test_break(), do_merge_results=done)
 
     def denoise(self, job, result, image):
-        """Shows the image of a finished job without its noise. `image` (height, width, 4) is the one as rendered, which the pass NOISY keeps. If it
-        cannot be denoised, a warning tells why, and the image as rendered stays."""
+        """Shows the image of a finished job without its noise. `image` (height, width, 4): the image as rendered, which the pass NOISY keeps. If
+        the image cannot be denoised, a warning tells why, and the image as rendered stays."""
         self.set_pixels(result, NOISY, image)
         self.update_result(result)
 
@@ -170,7 +170,7 @@ class BandsawEngine(bpy.types.RenderEngine):
 
         def on_state(state):
             last.update(state)
-            self.update_stats("", f"Denoising: {100 * state['fraction']:.0f} % of the guides" if state["state"] == "guides" else "Denoising")
+            self.update_stats("", f"Rendering what the denoiser needs: {100 * state['fraction']:.0f} %" if state["state"] == "guides" else "Denoising")
 
         try:
             clean = job.clean(on_state, patience=PATIENCE, stop=self.test_break)
@@ -187,8 +187,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.update_stats("", str(progress) + omitted)
 
     def show_preview(self, job, result, width, height):
-        """Shows the present picture. Returns False if there is none yet, or if the farm does not
-        answer."""
+        """Shows the job's present picture. Returns False if the job has no picture yet, or if the farm
+        does not answer."""
         try:
             picture = job.preview(max(width, height) if width * height <= 4_000_000 else 1024)
         except bandsaw.NoFarm:
@@ -228,6 +228,7 @@ class BandsawEngine(bpy.types.RenderEngine):
             self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), camera))
 
 
+# Returns pixels (height, width, 3) with a fourth channel, alpha, that is 1 everywhere.
 def with_alpha(pixels):
     return np.concatenate([pixels, np.ones(pixels.shape[:2] + (1,), dtype=np.float32)], axis=2)
 

@@ -150,7 +150,8 @@ class Evaluator:
         return array
 
     # Returns the uv map `name` as vectors (n, 3) whose third component is 0. If the points do not
-    # know this name, returns their active map. Raises NeedsCoordinates if they do not have the map.
+    # know this name, returns their active map. Raises NeedsCoordinates if the points have no
+    # coordinates in the map.
     def uv(self, name):
         uv = self.points.uv.get(name, self.points.uv.get(""))
         if uv is None:
@@ -502,6 +503,7 @@ def blended(node, kind, factor, a, b, clamp):
     return np.clip(result, 0, 1) if clamp else result
 
 
+# Returns the hue, the saturation and the value (n, 3) of colours (n, 3).
 def to_hsv(c):
     high, low = c.max(axis=1), c.min(axis=1)
     span = high - low
@@ -511,6 +513,7 @@ def to_hsv(c):
     return np.stack([np.where(span == 0, 0, hue), np.where(high == 0, 0, span / np.where(high == 0, 1, high)), high], axis=1)
 
 
+# Returns the colours (n, 3) of hues, saturations and values (n, 3): the inverse of to_hsv().
 def from_hsv(hsv):
     h, s, v = hsv[:, 0] * 6, hsv[:, 1], hsv[:, 2]
     parts = [np.clip(np.abs(h - 3) - 1, 0, 1), np.clip(2 - np.abs(h - 2), 0, 1), np.clip(2 - np.abs(h - 4), 0, 1)]

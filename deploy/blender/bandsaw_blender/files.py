@@ -16,7 +16,7 @@ def exr(pixels):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
 
     box = struct.pack("<iiii", 0, 0, width - 1, height - 1)
-    # For each channel: its name, the type 2 (float), four unused bytes, and a sample in every column and every row.
+    # For each channel: its name, the type 2 (float), four unused bytes, and 1, 1: each column and each row has a sample.
     channels = b"".join(name + b"\0" + struct.pack("<iBBBBii", 2, 0, 0, 0, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
     head = b"".join((
         struct.pack("<ii", 20000630, 2),  # OpenEXR's magic number, and version 2 of the format
@@ -48,9 +48,10 @@ def png(codes):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    # Each row begins with a byte 0, which says that it is not filtered.
+    # Each row begins with a byte 0, which says that the row is not filtered.
     lines = np.zeros((height, 1 + width * channels), dtype=np.uint8)
     lines[:, 1:] = codes.reshape(height, -1)
+    # 8: bits of a value. 0 or 2: grey or colour. The other zeros: the standard compression and filters, not interlaced.
     head = struct.pack(">IIBBBBB", width, height, 8, 0 if channels == 1 else 2, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(lines.tobytes(), 3)) + chunk(b"IEND", b"")
 

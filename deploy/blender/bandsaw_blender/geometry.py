@@ -102,6 +102,7 @@ class Pose:
                 (self.normals is None) == (other.normals is None))
 
     def equals(self, other):
+        """Returns true if both are poses of the same mesh with equal positions and normals."""
         return (self.fits(other) and np.array_equal(self.positions, other.positions) and
                 (self.normals is None or np.array_equal(self.normals, other.normals)))
 
@@ -196,9 +197,10 @@ DEFORMS = "deforms"  # the name of the animation of a mesh that deforms
 
 
 def glb(triangles):
-    """Returns the bytes of a GLB file with this one mesh. If the mesh deforms, its vertices are
-    those when the shutter opens, and a morph target has the vertices when the shutter closes. The
-    animation DEFORMS leads from the mesh to the morph target in the time from 0 to 1."""
+    """Returns the bytes of a GLB file with this one mesh. If the mesh deforms, the file has the
+    vertices at the time when the shutter opens. A morph target leads to the vertices at the time
+    when the shutter closes. The animation DEFORMS raises the weight of the morph target from 0 to 1
+    in the time from 0 to 1."""
     parts, views, accessors, attributes = [], [], [], {}
 
     # Adds an array and returns the index of its accessor. `component` and `target`: constants of

@@ -2,11 +2,12 @@
 
     blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME, FRAME)"
 
-FRAME is optional: without it the scene is at the frame that is saved in the file. If it is "-", frames are read from standard input, one a line.
-Each of them is answered with the line "bandsaw: done" on standard output. The folder then contains only the files of that frame.
+FRAME is the number of the frame to export. Without FRAME, the frame that is saved in the .blend file is exported. If FRAME is "-", the numbers
+of frames are read from standard input, one a line. For each frame, the files of the previous frame are removed from FOLDER, the frame is
+exported, and the line "bandsaw: done" is written to standard output.
 
-Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that Bandsaw does not show as
-Blender does. If it fails, writes FOLDER/error with one line instead."""
+The export writes the scene file FOLDER/NAME.json, the files to which the scene file refers, and FOLDER/warnings with a line for each thing
+that Bandsaw does not show as Blender does. If the export fails, it writes FOLDER/error with one line instead."""
 
 import os
 import shutil
@@ -68,6 +69,7 @@ def remove_results(folder, addon="bandsaw_blender.zip"):
             os.remove(os.path.join(folder, name))
 
 
+# Exports one frame or, if `frame` is "-", the frames whose numbers come from standard input.
 def main(folder, name="scene", frame=None):
     if frame != "-":
         export(folder, name, frame)

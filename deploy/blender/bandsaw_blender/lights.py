@@ -1,7 +1,8 @@
-"""Converts Blender's lights, world and volumes to those of a scene file. Powers become radiances, intensities and irradiances; Blender's manual,
-"Light Objects", and deploy/blender/README.md define the units. `out` is the scene.Scene in the making. In add_*(), `thing` is the light's object.
-Its matrix `placed`, its position `place` and the direction `toward`, in which it shines, are in the axes of scene files. `tint` is the light's
-colour times its power."""
+"""Converts Blender's lights, world and volumes to those of a scene file. Powers become radiances, intensities and irradiances. Blender's manual,
+"Light Objects", and deploy/blender/README.md define the units. `out` is the scene.Scene in the making.
+
+In add_sun(), add_point(), add_spot() and add_area(), `thing` is the light's object in Blender. The light's matrix `placed`, its position `place`
+and the direction `toward`, in which the light shines, are in the axes of scene files. `tint` is the light's colour times its power."""
 
 import math
 
@@ -17,6 +18,7 @@ from .shading import rgb
 TO_SCENE = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
 
 
+# Returns a vector of Blender as a list of numbers.
 def vector(v):
     return [float(x) for x in v]
 
@@ -136,6 +138,7 @@ def add_area(out, thing, placed, place, toward, tint):
 # ---- the world ----
 
 
+# Adds the background and the fog of a world of Blender; None: the scene has no world.
 def add_world(out, world):
     background = None
     try:
@@ -282,6 +285,7 @@ def medium_of(out, output, where):
         return None
 
 
+# Returns the anisotropy of a volume node's phase function. `values`: the Evaluator of the node.
 def anisotropy(values, node):
     return min(max(float(evaluate.number(values.of(node, "Anisotropy"))[0]), -0.999), 0.999)
 

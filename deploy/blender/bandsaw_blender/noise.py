@@ -7,6 +7,7 @@ import numpy as np
 _MASK = np.uint32(0xFFFFFFFF)
 
 
+# Returns the uint32 array x with the bits rotated by k places to the left.
 def _rotate(x, k):
     return ((x << np.uint32(k)) | (x >> np.uint32(32 - k))).astype(np.uint32)
 
@@ -32,6 +33,7 @@ def _hash(*keys):
     return c
 
 
+# Returns the bits of 32-bit floats as uint32.
 def _bits(x):
     return np.asarray(x, dtype=np.float32).view(np.uint32)
 
@@ -42,8 +44,8 @@ def _hash_floats(*keys):
 
 
 def _offset(seed):
-    """Returns a vector (3) for each `seed`. Blender adds it to the points, so that noises with
-    different seeds are independent."""
+    """Returns the vector (3) of the number `seed`. Blender adds this vector to the points, so that
+    noises with different seeds are independent."""
     one = np.full(1, seed, dtype=np.float32)
     return 100 + 100 * np.array([_hash_floats(one, np.full(1, k, dtype=np.float32))[0] for k in (0, 1, 2)])
 

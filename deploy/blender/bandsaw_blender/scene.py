@@ -86,7 +86,7 @@ class Scene:
         """Adds a shape that emits to the side of its normal. `hidden`: the camera does not see it."""
         self.scene["shape"].append({**shape, "material": self.lamp_material(radiance, hidden)})
 
-    # Returns the 12 numbers of an affine map, as Model.matrix has them.
+    # Returns the 12 numbers of an affine map: its first three rows, as the field Model.matrix has them.
     @staticmethod
     def rows(matrix):
         return [float(matrix[row][column]) for row in range(3) for column in range(4)]
@@ -195,8 +195,8 @@ class Moved:
             return
         data = thing.data.as_pointer()
         if thing.name_full in poses:
-            # Geometry nodes may place other meshes under the name of their object. Such a name has
-            # no pose.
+            # If an object has geometry nodes, other meshes may be placed under the object's name.
+            # Then this name has no pose.
             if poses[thing.name_full][0] != data:
                 poses[thing.name_full] = data, None
             return
@@ -451,8 +451,8 @@ def material_part(out, material, piece, thing):
     return part
 
 
-# Returns the message Medium of a material's volume, without a name; None if there is none or it
-# cannot be shown.
+# Returns the message Medium of a material's volume, without a name. Returns None if the material has
+# no volume, or if the volume cannot be shown.
 def interior_of(out, material, thing):
     if not material.use_nodes or material.node_tree is None:
         return None

@@ -240,8 +240,8 @@ class Shader:
         return self.value(input_of(node, *names), True, default, unlimited)
 
     def plain(self, node, *names, default=0.0):
-        """Returns a number for a field that takes no texture. For a texture, warns and returns its
-        mean."""
+        """Returns a number for a field that takes no texture. If the input has a texture, warns. Then
+        returns the mean of the texture if it was baked, otherwise the input's own value."""
         socket = input_of(node, *names)
         value = self.value(socket, True, default, unlimited=True)
         if value.constant is None:
@@ -267,7 +267,7 @@ class Shader:
         image = {"file": file, "wrap": wrap, "filter": nearest, "encoding": self.out.images.encoding(node.image), **placed}
         return Value(texture={"image": image})
 
-    # True if the node is in another node tree than the shader that is converted.
+    # Returns true if the node of `output` is in another node tree than the shader that is converted.
     def in_group(self, output):
         return output.node.id_data != self.tree
 
@@ -319,9 +319,9 @@ class Shader:
         return self.stored(value, (side, side), is_number, unlimited, {"uv_set": "UV_SET_SECOND", "wrap": "WRAP_CLAMP"})
 
     def bake_size(self, socket):
-        """Returns the width and the height for baking an input. They are those of the largest image
-        among the nodes before it, at least 256, at least 1,024 with a procedural texture or a
-        group, and at most MOST_BAKED."""
+        """Returns the width and the height for baking an input: the largest width and the largest height
+        of the images in the nodes that lead to the input. Both are at least 256 and at most MOST_BAKED.
+        If one of these nodes is a procedural texture or a group, both are at least 1,024."""
         width, height, seen, waiting = 256, 256, set(), [from_node(socket)]
         while waiting:
             output = waiting.pop()
@@ -393,7 +393,7 @@ class Shader:
         if from_node(height) is None:
             raise Unsupported("a bump without height")
         if from_node(input_of(node, "Normal")) is not None:
-            self.warn("of several bump and normal maps one after the other only the last is shown")
+            self.warn("where several bump or normal maps follow each other, only the last one is shown")
         strength = float(np.clip(self.constant(input_of(node, "Strength"))[0], 0, 1)) if self.constant(input_of(node, "Strength")) is not None else 1.0
         distance = self.constant(input_of(node, "Distance"))
         distance = 1.0 if distance is None else float(distance[0])
@@ -505,6 +505,7 @@ class Shader:
 
     shader_bsdf_anisotropic = shader_bsdf_glossy
 
+    # Returns the message for the microfacets of a node's rough reflection.
     def microfacets(self, node):
         if getattr(node, "distribution", "GGX") == "SHARP":
             return {"alpha": 0.0}
@@ -521,6 +522,7 @@ class Shader:
         self.warn("the Refraction BSDF is shown as glass, which reflects too")
         return self.glass(node, self.value(input_of(node, "Color")), node.distribution == "SHARP")
 
+    # Returns the Surface of glass. `tint`: the colour of the glass, a Value; `sharp`: the glass is smooth.
     def glass(self, node, tint, sharp=False):
         index = self.plain(node, "IOR", default=1.45)
         roughness = Value(0) if sharp else self.number(node, "Roughness")
@@ -566,6 +568,7 @@ class Shader:
 
     shader_background = shader_emission
 
+    # Returns the emission of a node, a Value; None if it is 0. `color`, `strength`: names of the inputs.
     def emission(self, node, color, strength):
         emitted = self.value(input_of(node, *color), default=1.0, unlimited=True).times(self.number(node, *strength, default=1.0, unlimited=True))
         return None if emitted.is_constant(0) else emitted
@@ -708,6 +711,7 @@ class Shader:
         root = np.sqrt(min(max(f0, 0.0), 0.44))
         return float((1 + root) / (1 - root))
 
+    # Adds the coat of a Principled BSDF to the Surface `made`.
     def add_coat(self, made, node):
         coat = self.number(node, "Clearcoat", "Coat Weight")
         if coat.is_constant(0):
