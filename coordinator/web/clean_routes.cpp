@@ -29,6 +29,7 @@ const char* stage_name(CleanPictures::Stage stage) {
   return "";
 }
 
+/// Returns the state of a clean picture as a web::CleanPicture, or the error.
 HttpReply answer_with(const absl::StatusOr<CleanPictures::State>& state) {
   if (!state.ok()) {
     return refuse(state.status());

@@ -111,6 +111,7 @@ class Exchange {
   }
 
  private:
+  /// Returns the response to a request whose head is too long or is not HTTP/1.1.
   static HttpReply refuse_head(const beast::error_code& error) {
     HttpReply reply = refuse(absl::InvalidArgumentError(
         error == http::error::header_limit
@@ -121,6 +122,7 @@ class Exchange {
     return reply;
   }
 
+  /// Returns the request whose head the parser has read.
   HttpRequest read_request() const {
     HttpRequest request;
     const auto& head = parser_.get();
@@ -134,6 +136,7 @@ class Exchange {
     return request;
   }
 
+  /// Returns the handler's reply; if the handler throws an exception, an error.
   HttpReply answer(const HttpRequest& request, const HttpHandler& handler) {
     connection_.begin_body();
     awaits_continue_ = absl::EqualsIgnoreCase(request.header("Expect"), "100-continue");
@@ -170,6 +173,7 @@ class Exchange {
                        [&](const HttpField& field) { return field.first == name; });
   }
 
+  /// Writes the response. A header of the reply replaces the header of the same name in headers_.
   void write(const HttpRequest& request, const HttpReply& reply) {
     using Bytes = http::span_body<const char>;
     http::response<Bytes> response(static_cast<http::status>(reply.status), /*version=*/11);

@@ -12,10 +12,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Limits of gallery jobs; larger ones need `bandsaw submit`.
+/// Limits of the jobs that users submit from the gallery. Larger jobs need `bandsaw submit`.
 constexpr std::uint64_t kMaxGallerySamples = 4096;
 constexpr std::uint32_t kMaxWidth = 4096;
 
+/// Returns the scenes of the gallery, each with the newest job that the gallery submitted for it.
 web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
   const auto jobs = blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
   web::Gallery message;
@@ -30,6 +31,7 @@ web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
   return message;
 }
 
+/// Submits a job for the scene that the body, a web::RenderScene in JSON, names.
 absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
                                       const HttpBody& body) {
   web::RenderScene request;

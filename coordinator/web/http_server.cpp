@@ -78,6 +78,7 @@ absl::StatusOr<int> listen_on(const std::string& host, int port) {
       absl::StrCat("cannot listen on ", host, ":", port, ": ", why));
 }
 
+/// Returns the port at which the socket listens.
 absl::StatusOr<int> port_of(int socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);

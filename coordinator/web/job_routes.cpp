@@ -17,6 +17,7 @@ namespace {
 using Changed = absl::StatusOr<JobView>;
 using JobCommand = void (Engine::*)(JobId, std::function<void(Changed)>);
 
+/// Returns the job after a change as a web::Job, or the error.
 HttpReply answer_with(const Changed& changed) {
   if (!changed.ok()) {
     return refuse(changed.status());

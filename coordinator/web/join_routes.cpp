@@ -107,6 +107,8 @@ absl::StatusOr<farm::PutBandReply> take_band(Engine& engine, BrowserLeases& leas
   return reply;
 }
 
+/// Returns the blob that the path names by its digest. `transfer`: the object of begin_transfer(),
+/// which is kept until the response is sent.
 HttpReply blob_reply(BrowserLeases& leases, const HttpRequest& request,
                      std::shared_ptr<const void> transfer) {
   const absl::StatusOr<wire::Digest> digest = wire::digest_from_hex(request.captured);
@@ -139,6 +141,8 @@ bool accepts_brotli(const HttpRequest& request) {
   return false;
 }
 
+/// Returns the renderer, compressed if the browser accepts it. If the browser has stored this
+/// version already, returns a response 304 without the renderer.
 HttpReply program_reply(const BrowserProgram& program, const HttpRequest& request) {
   if (program.bytes.empty()) {
     return refuse(absl::NotFoundError(

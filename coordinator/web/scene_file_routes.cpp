@@ -165,6 +165,7 @@ bool is_safe(const std::string& name) {
   });
 }
 
+/// Writes the bytes to a new file at `path`.
 absl::Status write_copy(const fs::path& path, absl::Span<const std::byte> bytes) {
   std::FILE* const file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) {

@@ -46,7 +46,7 @@ const secondsPerRow = new Map();  // by job
 let outgoing = [];              // finished bands
 let sending = false;
 let lastEnd = 0;                // seconds, when the last band was finished
-const pieces = [];              // {began, at, samples} of the last rendered rows; at: their end
+const pieces = [];              // the rendering of the last rows: {began, at, samples}, from time `began` to `at`
 const newLines = [];            // of the log, to be sent after the next heartbeat
 const lastLines = [];           // of the log, to be sent with a failed band
 
@@ -107,6 +107,7 @@ function updatePhase() {
   }
 }
 
+/// Adds a line with the present time to the log of this tab.
 function log(text) {
   const line = `${new Date().toISOString()} ${text}`;
   for (const lines of [newLines, lastLines]) {
@@ -519,6 +520,8 @@ function leaveIfDrained() {
   old?.close(1000);
 }
 
+/// Starts or ends renderers, so that there is one for each of `count` cores, and divides the memory for
+/// scenes among them.
 function setCores(count) {
   state.cores = Math.max(1, Math.floor(count));
   state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.maxInstanceBytes, mostSceneMemory));
@@ -548,6 +551,8 @@ const calls = {
     updatePhase();
     if (!pausedWhy) connect();
   },
+  /// Changes the number of cores. The coordinator learns it when the tab connects again, soon after the
+  /// last change.
   cores({count}) {
     setCores(count);
     program.bytes("session_offer", session, state.cores, state.memoryBytes);

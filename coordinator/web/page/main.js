@@ -22,6 +22,7 @@ let view = null;  // {element, update(overview), leave?()}
 let timer = 0;
 let isLost = false;  // the last request failed
 
+/// Replaces the present view by the view `next`.
 function show(next) {
   view?.leave?.();
   view = next;

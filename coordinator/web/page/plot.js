@@ -6,6 +6,7 @@ import {duration, el, percent} from "./dom.js";
 const space = "http://www.w3.org/2000/svg";
 const box = {width: 480, height: 220, left: 56, right: 12, top: 10, bottom: 26};
 
+/// Returns a new SVG element with these attributes and the text `words`.
 function draw(tag, attributes, words = "") {
   const element = document.createElementNS(space, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);

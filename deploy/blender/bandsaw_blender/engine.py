@@ -9,9 +9,10 @@ import numpy as np
 
 from . import bandsaw, scene as scenes
 
-# The passes that the farm can render. For each: Blender's setting that switches the pass on, the
-# pass's name, number of channels, letters of the channels, and type, and the kind of the layer that
-# the farm renders for it (bandsaw.Job.layer).
+# The passes that the farm can render. Each entry has, in this order: Blender's setting that
+# switches the pass on, the name of the pass, the number of channels, the letters of the channels,
+# the type of the pass, and the kind of the layer that the farm renders for the pass
+# (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
 SAMPLES = "Debug Sample Count"  # the pass with the number of samples of each pixel; named as that of Cycles
@@ -59,6 +60,7 @@ class BandsawEngine(bpy.types.RenderEngine):
     bl_use_shading_nodes_custom = False
     bl_use_eevee_viewport = True  # the viewport's "Material Preview" and "Rendered" are drawn by EEVEE
 
+    # Tells Blender which passes a view layer has.
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         if scene.bandsaw.denoise:
@@ -69,6 +71,7 @@ class BandsawEngine(bpy.types.RenderEngine):
             if getattr(renderlayer, setting, False):
                 self.register_pass(scene, renderlayer, name, channels, letters, kind)
 
+    # Renders one view layer. Errors are reported to the user.
     def render(self, depsgraph):
         try:
             self.render_on_farm(depsgraph)
@@ -87,6 +90,8 @@ class BandsawEngine(bpy.types.RenderEngine):
             # From version 4.3 on, error_set() would show the message a second time.
             self.error_set(f"Bandsaw: {message}")
 
+    # Does the work of render(). Raises Stopped, bandsaw.BandsawError, RuntimeError, MemoryError or
+    # OSError.
     def render_on_farm(self, depsgraph):
         scene = depsgraph.scene
         size = (self.resolution_x, self.resolution_y)
@@ -118,6 +123,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         if self.test_break():
             raise Stopped()
 
+    # Sends the scene `made` to the farm and returns its bandsaw.Job. `scene`: Blender's scene with
+    # the settings.
     def submit(self, farm, scene, made):
         def on_progress(sent, total):
             self.stop_if_asked()

@@ -1,7 +1,7 @@
 """Evaluates Blender's shader nodes that compute numbers, colours and vectors, at many points at once, with numpy.
 
 A value is an array: (n) for a number, (n, 3) for a colour or vector; n is the number of points, or 1 where the value is the
-same everywhere. A `Points` holds what the coordinate nodes give."""
+same everywhere. A `Points` has the coordinates that coordinate nodes return."""
 
 import numpy as np
 
@@ -360,6 +360,8 @@ class Evaluator:
     def node_rgbtobw(self, node, output):
         return number(color(self.of(node, "Color")))
 
+    # Returns one channel of the node's input. `mode`: "HSV" converts the input to hue, saturation
+    # and value; "RGB" and "XYZ" do not.
     def _separate(self, node, output, mode):
         value = color(self.of(node, "Color", "Image", "Vector"))
         if mode == "HSV":
@@ -368,6 +370,7 @@ class Evaluator:
             raise Unsupported(f'the mode of the node "{node.name}"')
         return value[:, list(node.outputs).index(output)]
 
+    # Returns the colour or vector of the node's three inputs. `mode`: as for _separate().
     def _combine(self, node, mode):
         parts = np.stack(np.broadcast_arrays(*(number(self.socket(socket)) for socket in list(node.inputs)[:3])), axis=1)
         if mode not in ("RGB", "XYZ", "HSV"):

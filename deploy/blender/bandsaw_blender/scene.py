@@ -51,6 +51,7 @@ class Scene:
             self.files[stored] = data if len(data) < self.LARGE else self._written(stored, data)
         return stored
 
+    # Writes a large file to the temporary folder and returns its path.
     def _written(self, name, data):
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="bandsaw-scene-")
@@ -188,6 +189,8 @@ class Moved:
         parent = instance.parent.name_full if instance.parent is not None else ""
         return instance.object.name_full, parent, tuple(instance.persistent_id)
 
+    # Adds the pose of an instance's mesh to `poses`, a dictionary from the names of objects to pairs of
+    # the address of the mesh and its Pose. Does nothing for a mesh that cannot deform.
     @staticmethod
     def _add_pose(instance, poses):
         thing = instance.object

@@ -33,6 +33,7 @@ class Value:
         return self.texture if self.texture is not None else {"color": rgb(self.constant)}
 
     def times(self, other):
+        """Returns the product of two Values."""
         if self.constant is not None and other.constant is not None:
             return Value(self.constant * other.constant)
         if self.is_constant(1):
@@ -83,6 +84,7 @@ class Piece:
         self.atlas, self.used = None, set()
 
     def make_atlas(self):
+        """Returns the atlas of the piece, and makes it at the first call."""
         if self.atlas is None:
             # The atlas takes the place of the second uv set. Look-ups in the second uv set are
             # baked too.
@@ -143,6 +145,7 @@ class Images:
             self._pixels[key] = evaluate.linear_pixels(image)
         return self._pixels[key]
 
+    # Returns the name that the encoding of the image's colours has in scene files.
     def encoding(self, image):
         if image.colorspace_settings.name in ("Non-Color", "Raw", "Linear", "Linear Rec.709"):
             return "ENCODING_LINEAR"
