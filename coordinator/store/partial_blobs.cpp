@@ -109,10 +109,11 @@ void PartialBlobs::trim() {
     if (claimed_.contains(partial.path)) {
       continue;
     }
-    bytes += partial.size;
-    if (++count > wire::kPartialBlobs || bytes > wire::kPartialBytes) {
-      bytes -= partial.size;
+    if (count == wire::kPartialBlobs || bytes + partial.size > wire::kPartialBytes) {
       remove_file(partial.path).IgnoreError();
+    } else {
+      ++count;
+      bytes += partial.size;
     }
   }
 }

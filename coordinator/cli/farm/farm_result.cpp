@@ -114,8 +114,9 @@ absl::StatusOr<FarmImage> FarmClient::receive(JobId job, const OpenImage& open) 
     return too_much ? grpc::Status::OK : status;
   }));
   if (too_much) {
-    return absl::DataLossError(
-        absl::StrCat("job ", job, ": the farm sent more bytes than the image has"));
+    return absl::DataLossError(absl::StrCat(
+        "job ", job,
+        ": the farm sent an image that is too large, or more bytes than the image has"));
   }
   return image_of(received);
 }

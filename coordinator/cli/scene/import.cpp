@@ -131,9 +131,11 @@ ExitCode run(const ImportOptions& options, Process& process) {
                              .whole("files", *count)
                              .str());
   } else {
-    process.console.line(
-        absl::StrCat("wrote ", target.string(),
-                     *count == 0 ? "" : absl::StrCat(" and ", *count, " files beside it")));
+    process.console.line(absl::StrCat(
+        "wrote ", target.string(),
+        *count == 0
+            ? ""
+            : absl::StrCat(" and ", *count, *count == 1 ? " file" : " files", " beside it")));
   }
   return ExitCode::kDone;
 }

@@ -248,7 +248,7 @@ class Shader:
         socket = input_of(node, *names)
         value = self.value(socket, True, default, unlimited=True)
         if value.constant is None:
-            self.warn(f"a texture at {socket.name} cannot be shown; its mean is used")
+            self.warn(f"a texture at {socket.name} cannot be shown; one value is used instead of it")
             return float(value.mean) if hasattr(value, "mean") else float(socket.default_value)
         return value.number
 

@@ -96,7 +96,4 @@ class BsdfReader {
   Conversion& to_;
 };
 
-/// Returns the object that a property holds; nullptr if it holds something else.
-const Object* object_in(const Property& property);
-
 }  // namespace bandsaw::mitsuba

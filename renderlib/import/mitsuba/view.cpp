@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
@@ -47,8 +48,11 @@ absl::Status read_filter(const Object& filter, scene::Image& image, Conversion& 
     image.mutable_filter()->mutable_tent()->set_radius(std::clamp(radius, 0.0, 16.0));
   } else {
     if (filter.type != "gaussian") {
+      constexpr std::string_view kWithNegativeLobes[] = {"mitchell", "catmullrom", "lanczos"};
+      const bool is_known = std::ranges::count(kWithNegativeLobes, filter.type) > 0;
       to.warn(filter.place, absl::StrCat("filter \"", filter.type,
-                                         "\" has negative lobes; a gaussian stands in its place"));
+                                         is_known ? "\" has negative lobes" : "\" is not known",
+                                         "; a gaussian stands in its place"));
       from.ignore({"a", "b", "B", "C", "lobes", "radius"});
     }
     ASSIGN_OR_RETURN(const double deviation, from.number("stddev", 0.5));

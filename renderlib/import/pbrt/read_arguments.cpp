@@ -51,7 +51,8 @@ absl::StatusOr<Transform> read_matrix(Tokens& tokens, const Place& place) {
   ASSIGN_OR_RETURN(const std::vector<double> m, read_numbers(tokens, place, 16));
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] == 0) {
     return error_at(place,
-                    "the last row of the matrix must be 0 0 0 1, so that the matrix is affine");
+                    "the last row of the matrix must be 0 0 0 1 or a multiple of it, so that the "
+                    "matrix is affine");
   }
   Transform out;
   for (std::size_t row = 0; row < 3; ++row) {

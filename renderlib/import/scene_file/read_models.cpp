@@ -91,12 +91,22 @@ absl::Status place_model(const Field& in, const Placements& what, const Transfor
              : in.error("scale", "is too large or too small for this model");
 }
 
-/// Returns the boundaries of the medium that fills a model's meshes, one for each placed mesh.
+/// Returns the boundaries of the medium that fills a model's meshes, one for each placed mesh. The
+/// grids of a medium are in the space of the model, and a frame has one motion for a boundary and
+/// its grids. So INVALID_ARGUMENT is returned if the medium has grids and a node of the model moves
+/// while the shutter is open.
 absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
                                          const Model& model, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   Placements filled{model.frames, {}};
+  const bool has_grids = draft.out.scene.media.media[index_of(medium)].grids.any();
   for (const Instance& mesh : model.instances) {
+    if (has_grids && mesh.frame != kNoFrame) {
+      return in.error(
+          "interior",
+          "has grids, but a node of the model moves while the shutter is open; move the "
+          "whole model by keys, or use a medium without grids");
+    }
     ASSIGN_OR_RETURN(Instance boundary, boundary_of(in, mesh, medium, draft));
     give_space({}, boundary, draft, filled);
     filled.instances.push_back(boundary);

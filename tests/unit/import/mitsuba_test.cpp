@@ -93,6 +93,19 @@ TEST_F(MitsubaScene, CropsBecomeWindows) {
   EXPECT_EQ(converted->scene.image().filter().box().radius(), 0.5);
 }
 
+TEST_F(MitsubaScene, TheWarningOfAReplacedFilterTellsWhyItIsReplaced) {
+  const auto warnings_of = [&](const std::string& filter) {
+    const auto converted = convert_file(
+        "<scene version=\"3.0.0\"><sensor type=\"perspective\">"
+        "<film type=\"hdrfilm\"><rfilter type=\"" +
+        filter + "\"/></film></sensor></scene>");
+    return converted.ok() ? converted->warnings : std::vector<std::string>();
+  };
+  EXPECT_THAT(warnings_of("gaussian"), IsEmpty());
+  EXPECT_THAT(warnings_of("lanczos"), ElementsAre(HasSubstr("\"lanczos\" has negative lobes")));
+  EXPECT_THAT(warnings_of("unknown"), ElementsAre(HasSubstr("\"unknown\" is not known")));
+}
+
 TEST_F(MitsubaScene, AMirroredSensorIsMirrored) {
   const auto converted = convert_file(R"(<scene version="3.0.0"><sensor type="perspective">
     <transform name="to_world"><scale x="-1"/></transform></sensor></scene>)");

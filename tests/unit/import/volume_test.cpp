@@ -15,6 +15,7 @@
 #include "renderlib/import/import.h"
 #include "renderlib/import/volume/volume_file.h"
 #include "tests/unit/import/files.h"
+#include "tests/unit/import/gltf_writer.h"
 
 namespace bandsaw {
 namespace {
@@ -338,6 +339,28 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(frame_at(boundaries.frames, placed.frame, 0), translation({5, 0, 0}));
   EXPECT_EQ(placed.to_world.point({1, 1, 1}), (Vec3{1, 2, 3}));
   EXPECT_EQ(frame_at(boundaries.frames, boundaries.instances[3].frame, 0), scaling({2, 2, 2}));
+}
+
+TEST(SceneVolumes, AMovingNodeOfAModelCannotBeFilledByAMediumWithGrids) {
+  const TempDir folder;
+  test::GltfWriter model;
+  model.attributes() = {{"POSITION", model.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}};
+  const auto times = model.add<float>({0, 1}, 1);
+  const auto places = model.add<float>({0, 0, 0, 1, 0, 0}, 3);
+  model.root["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", places}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+  model.write(folder, "m.gltf");
+  write_text(folder, "a.vol", Vol{}.bytes());
+  ImportChoices choices;
+  choices.frame = FrameChoice{.number = 0, .fps = 4, .shutter = 0.5};
+  const auto imported = import_scene(write_text(folder, "s.textproto", kHead + R"(
+medium { name: "smoke" scattering { rgb: [1, 1, 1] } density_grid { file: "a.vol" } }
+model { file: "m.gltf" interior: "smoke" })"),
+                                     choices);
+  EXPECT_THAT(std::string(imported.status().message()),
+              HasSubstr("model[0].interior: has grids, but a node of the model moves while the "
+                        "shutter is open"));
 }
 
 TEST(SceneVolumes, AGridThatIsUsedTwiceWithOnePlacementIsStoredOnce) {

@@ -188,6 +188,19 @@ TEST_F(BlobStoreTest, PartsAreLimitedInNumberAndAge) {
   EXPECT_EQ(files(), 0u);
 }
 
+TEST_F(BlobStoreTest, APartThatIsRemovedForItsSizeDoesNotCount) {
+  const auto store = open();
+  leave_half(*store, long_text('e'));
+  // These files have no blocks on the disk.
+  for (std::size_t i = 0; i < wire::kPartialBlobs; ++i) {
+    const auto file = folder_ / ("incoming/" + wire::sha256(std::to_string(i)).hex() + ".part");
+    write_all(file, "");
+    std::filesystem::resize_file(file, wire::kPartialBytes + 1);
+  }
+  leave_half(*store, long_text('f'));
+  EXPECT_EQ(files(), 2U) << "both small parts must be kept";
+}
+
 TEST_F(BlobStoreTest, ADamagedFileIsDataLossAndCanBeSentAgain) {
   const std::string text = "some geometry";
   const wire::Digest digest = wire::sha256(text);
