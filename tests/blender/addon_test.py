@@ -242,6 +242,13 @@ class AddOn(unittest.TestCase):
         self.assertLess(abs(self.pixels()[:, :, 0] - np.arange(96) / 96).max(), 1e-6)
         self.assertIn("the image is not denoised: the image of job 1 was not denoised: a guide has failed", self.told())
 
+    def test_esc_during_denoising_keeps_the_image_as_rendered(self):
+        self.scene.bandsaw.denoise = True
+        module = sys.modules["bandsaw_blender.engine"]
+        with mock.patch.object(module.BandsawEngine, "denoise", side_effect=module.Stopped):
+            self.render()
+        self.assertLess(abs(self.pixels()[:, :, 0] - np.arange(96) / 96).max(), 1e-6)
+
     def test_esc_during_the_passes_cancels_all_of_them(self):
         layer = bpy.context.view_layer
         layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True

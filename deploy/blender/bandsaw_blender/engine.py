@@ -157,13 +157,14 @@ class BandsawEngine(bpy.types.RenderEngine):
             self.stop_if_asked()
             image = with_alpha(job.image().array())
             self.set_pixels(result, "Combined", image)
+            self.update_result(result)
+            done = True  # from here on, Esc and errors leave the image as it is
             if depsgraph.scene.bandsaw.denoise:
                 self.denoise(job, result, image)
             if depsgraph.scene.bandsaw.pass_samples:
                 self.set_pixels(result, SAMPLES, np.full(image.shape[:2] + (1,), progress.samples, dtype=np.float32))
             self.add_passes(depsgraph, job, result, made.scene["camera"])
             self.update_result(result)
-            done = True
         finally:
             self.end_result(result, cancel=not done and self.test_break(), do_merge_results=done)
 
