@@ -14,6 +14,7 @@
 #include "proto/link/random.h"
 #include "renderlib/base/pool.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/denoise/halves.h"
 #include "renderlib/image/shrink.h"
 #include "renderlib/render/first_part.h"
 #include "renderlib/render/kernel.h"
@@ -42,23 +43,6 @@ absl::Status check(const JobView& job) {
                    job.id, " --denoise -o FILE`"));
 }
 
-/// The denoiser estimates errors from the first part of each pixel's samples. Returns for each
-/// pixel the share of its samples that is in this part. `counts`: the numbers of samples of an
-/// adaptive job's pixels. An image of at most 8 samples has no parts. For such an image, an
-/// additional job renders half of the samples.
-std::vector<float> shares_of(const JobView& job, const std::optional<HeldImage>& counts,
-                             std::size_t pixels) {
-  if (counts) {
-    return first_part_shares(counts->result.image);
-  }
-  const std::uint64_t samples = job.samples_per_pixel;
-  const std::uint64_t first = first_part_samples(samples);
-  return first > 0
-             ? first_part_shares(samples, pixels)
-             : std::vector<float>(pixels, static_cast<float>(static_cast<double>(samples / 2) /
-                                                             static_cast<double>(samples)));
-}
-
 }  // namespace
 
 absl::StatusOr<JobId> CleanPictures::submit_job(JobSpec spec, std::int32_t priority) {
@@ -78,7 +62,8 @@ absl::StatusOr<JobId> CleanPictures::submit_job(JobSpec spec, std::int32_t prior
 absl::StatusOr<std::vector<JobId>> CleanPictures::submit_jobs(const JobView& of) {
   CleanJobs wanted = clean_jobs(of.spec, of.samples_per_pixel);
   std::vector<JobId> jobs;
-  for (JobSpec* spec : {&wanted.albedo, &wanted.shape, wanted.half ? &*wanted.half : nullptr}) {
+  for (JobSpec* spec :
+       {&wanted.albedo, &wanted.shape, wanted.further ? &*wanted.further : nullptr}) {
     if (spec != nullptr) {
       ASSIGN_OR_RETURN(const JobId job, submit_job(std::move(*spec), of.priority));
       jobs.push_back(job);
@@ -176,10 +161,10 @@ absl::StatusOr<CleanPictures::Kept> CleanPictures::filtered(const JobView& job,
   ASSIGN_OR_RETURN(HeldImage image, result_of(engine_, job.id));
   ASSIGN_OR_RETURN(HeldImage albedo, result_of(engine_, jobs[0]));
   ASSIGN_OR_RETURN(HeldImage shape, result_of(engine_, jobs[1]));
-  // For a picture without a first part, a third job has rendered half of the samples.
-  const bool again = jobs.size() > 2;
-  ASSIGN_OR_RETURN(HeldImage first, again ? result_of(engine_, jobs[2])
-                                          : result_of(engine_, job.id, FinishedPart::kFirst));
+  // For a picture without parts, a third job has rendered further samples.
+  const bool has_parts = jobs.size() == 2;
+  ASSIGN_OR_RETURN(HeldImage part, has_parts ? result_of(engine_, job.id, FinishedPart::kFirst)
+                                             : result_of(engine_, jobs[2]));
   std::optional<HeldImage> counts;
   if (is_adaptive(job.spec.stop)) {
     ASSIGN_OR_RETURN(counts, result_of(engine_, job.id, FinishedPart::kSamples));
@@ -190,11 +175,19 @@ absl::StatusOr<CleanPictures::Kept> CleanPictures::filtered(const JobView& job,
     return absl::ResourceExhaustedError(
         "images that are viewed or downloaded leave no memory to clean this one; try again later");
   }
-  const DenoiseInput input{.mean = std::move(image.result.image),
-                           .first = std::move(first.result.image),
-                           .first_share = shares_of(job, counts, pixels),
-                           .albedo = std::move(albedo.result.image),
-                           .shape = std::move(shape.result.image)};
+  DenoiseInput input;
+  input.albedo = std::move(albedo.result.image);
+  input.shape = std::move(shape.result.image);
+  if (has_parts) {
+    input.mean = std::move(image.result.image);
+    input.first = std::move(part.result.image);
+    input.first_share = counts ? first_part_shares(counts->result.image)
+                               : first_part_shares(job.samples_per_pixel, pixels);
+  } else {
+    add_samples(image.result.image, static_cast<double>(job.samples_per_pixel),
+                std::move(part.result.image),
+                static_cast<double>(further_samples(job.samples_per_pixel)), input);
+  }
   Pool pool(1);
   Kept kept{denoise(input, kernels().front()->fit, pool), image.result.display, *std::move(share)};
   kept.share.resize(2 * pixels * sizeof(Rgb));  // for the clean image and its error

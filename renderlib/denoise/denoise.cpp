@@ -278,8 +278,9 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
   }
 }
 
-/// Returns the errors of the image from the sums of all its rows.
-CleanError total_of(const std::vector<RowSums>& rows) {
+/// Returns the errors of the image from the sums of all its rows. `rendered_share`: as in
+/// DenoiseInput.
+CleanError total_of(const std::vector<RowSums>& rows, double rendered_share) {
   RowSums all;
   for (const RowSums& row : rows) {
     all.add(row);
@@ -287,7 +288,7 @@ CleanError total_of(const std::vector<RowSums>& rows) {
   const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
   all.clean = at_least_variance(all.clean, all.variance);
   return {.mean = all.value / count,
-          .rmse_raw = std::sqrt(all.raw / count),
+          .rmse_raw = std::sqrt(all.raw / count / rendered_share),
           .rmse_clean = std::sqrt(all.clean / count),
           .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
@@ -324,7 +325,7 @@ Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int str
     strip.fits = fit(strip.planes, kSettings, pool);
     Selection(strip, pool).write(out, sums);
   }
-  out.total = total_of(sums);
+  out.total = total_of(sums, input.rendered_share);
   return out;
 }
 

@@ -20,6 +20,9 @@ struct DenoiseInput {
   std::vector<float> first_share;
   Image albedo;  ///< guide: by the integrator kGuideAlbedo (scene/guide_integrators.h)
   Image shape;   ///< guide: normal and distance, by the integrator kGuideShape
+  /// Share of the image as rendered in the samples of `mean`, (0, 1]. It is below 1 if further
+  /// samples were added for the denoiser (halves.h, add_samples).
+  double rendered_share = 1;
 };
 
 /// Estimated errors of the image as rendered ("raw") and of the result ("clean"). A pixel counts,
@@ -27,7 +30,7 @@ struct DenoiseInput {
 /// members are 0 if no pixel counts.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
-  double rmse_raw = 0;    ///< RMSE of the image as rendered
+  double rmse_raw = 0;    ///< RMSE of the image as rendered, without further samples
   double rmse_clean = 0;  ///< RMSE of the clean image, bias included
   double bias_share = 0;  ///< share of the squared bias in rmse_clean^2, [0, 1]
 

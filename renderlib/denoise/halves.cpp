@@ -41,6 +41,26 @@ Image second_part(const DenoiseInput& input) {
   return second;
 }
 
+void add_samples(const Image& image, double samples, Image further, double further_samples,
+                 DenoiseInput& input) {
+  const double all = samples + further_samples;
+  const auto share = static_cast<float>(further_samples / all);
+  input.rendered_share = samples / all;
+  input.mean = image;
+  input.first_share.assign(image.pixels.size(), share);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    Rgb& mean = input.mean.pixels[i];
+    const Rgb& more = further.pixels[i];
+    if (finite(mean) && finite(more)) {
+      mean = {mean.r + share * (more.r - mean.r), mean.g + share * (more.g - mean.g),
+              mean.b + share * (more.b - mean.b)};
+    } else {
+      input.first_share[i] = 0;
+    }
+  }
+  input.first = std::move(further);
+}
+
 Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Image& clean_first,
                               const Image& clean_second, Pool& pool) {
   const Image second = second_part(input);
@@ -82,7 +102,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
     out.error.pixels.push_back(gray(std::sqrt(std::max(0.0f, error))));
   }
   out.total = {.mean = sum / count,
-               .rmse_raw = std::sqrt(raw / count),
+               .rmse_raw = std::sqrt(raw / count / input.rendered_share),
                .rmse_clean = std::sqrt(squares / count),
                .bias_share = squares > 0 ? std::clamp(1 - variance / squares, 0.0, 1.0) : 0};
   return out;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Estimates the error of an image that another denoiser has cleaned (OpenImageDenoise, which the
-// command line can use), from two parts of its samples.
+// The two parts of an image's samples (DenoiseInput): makes them by further samples for an image
+// that has no parts, and estimates from them the error of an image that another denoiser has
+// cleaned (OpenImageDenoise, which the command line can use).
 
 #include "renderlib/denoise/denoise.h"
 
@@ -10,6 +11,14 @@ namespace bandsaw {
 /// Returns the mean of the second part of the samples. Pixels whose `first_share` is not in (0, 1)
 /// have the value of `input.mean`.
 Image second_part(const DenoiseInput& input);
+
+/// Sets `mean`, `first`, `first_share` and `rendered_share` of `input`. `image` has `samples`
+/// samples per pixel, which cannot be divided. `further` has `further_samples` samples per pixel,
+/// which were rendered with another seed, so they are independent. All samples together are `mean`,
+/// and the further samples are its first part. In a pixel that is not finite in both images, `mean`
+/// is the pixel of `image`, and the share is 0, so that denoise() leaves it as it is.
+void add_samples(const Image& image, double samples, Image further, double further_samples,
+                 DenoiseInput& input);
 
 /// Returns `clean` with an estimate of its error. `clean_first` and `clean_second` are the two
 /// parts of the samples, each cleaned alone with the same guides (images of albedo, normal and

@@ -80,9 +80,9 @@ TEST_F(CleanImages, AreTheSameAfterTheCoordinatorWasKilled) {
   EXPECT_TRUE(file_bytes(farm_.path("there.raw.png")) == file_bytes(farm_.path("here.raw.png")));
 }
 
-// The denoiser needs an image of the first half of the samples. The samples of one block, which are
-// 8 or fewer, cannot be separated after they are summed. So if there is only one block, half of the
-// samples are rendered again.
+// The denoiser needs two independent parts of the samples. The samples of one block, which are 8 or
+// fewer, cannot be separated after they are summed. So if there is only one block, further samples
+// are rendered as the other part.
 TEST_F(CleanImages, AreTheSameWithFewSamples) {
   const std::string expected = here("spheres", "5", "here.pfm");
   farm_.add_worker("one", 2);

@@ -123,9 +123,8 @@ absl::Status start_guides(FarmClient& client, const Progress& last) {
   const std::int32_t priority = std::min(job.priority + 1, kMaxPriority);
   RETURN_IF_ERROR(submit(client, jobs.albedo, priority).status());
   RETURN_IF_ERROR(submit(client, jobs.shape, priority).status());
-  // An image of at most one block of samples has no first part. For such an image, the job `half`
-  // renders half of the samples again.
-  return jobs.half ? submit(client, *jobs.half, priority).status() : absl::OkStatus();
+  // An image of at most one block of samples has no first part, but needs further samples.
+  return jobs.further ? submit(client, *jobs.further, priority).status() : absl::OkStatus();
 }
 
 absl::StatusOr<Denoised> clean_job(FarmClient& client, const Progress& last, const Image& image,

@@ -89,22 +89,22 @@ absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, De
   RETURN_IF_ERROR(check_cleanable(input.spec.settings, input.samples));
   CleanJobs jobs = clean_jobs(input.spec, input.samples);
   std::vector<JobSpec> wanted = {std::move(jobs.albedo), std::move(jobs.shape)};
-  // If the image has no first part, half of its samples are rendered again.
-  if (!input.first) {
-    wanted.push_back(*std::move(jobs.half));
+  const bool has_parts = input.first.has_value();
+  if (jobs.further && !has_parts) {
+    wanted.push_back(*std::move(jobs.further));
   }
   ASSIGN_OR_RETURN(std::vector<Image> images, render(wanted));
-  if (!input.first) {
-    const auto half = static_cast<double>(input.samples / 2);
-    const auto share = static_cast<float>(half / static_cast<double>(input.samples));
-    input.first =
-        Film::FirstPart{std::move(images[2]), std::vector<float>(input.mean.pixels.size(), share)};
+  DenoiseInput of_filter;
+  of_filter.albedo = std::move(images[0]);
+  of_filter.shape = std::move(images[1]);
+  if (has_parts) {
+    of_filter.mean = input.mean;
+    of_filter.first = std::move(input.first->mean);
+    of_filter.first_share = std::move(input.first->share);
+  } else {
+    add_samples(input.mean, static_cast<double>(input.samples), std::move(images[2]),
+                static_cast<double>(further_samples(input.samples)), of_filter);
   }
-  const DenoiseInput of_filter{.mean = input.mean,
-                               .first = std::move(input.first->mean),
-                               .first_share = std::move(input.first->share),
-                               .albedo = std::move(images[0]),
-                               .shape = std::move(images[1])};
   return denoiser == Denoiser::kOidn ? clean_by_oidn(of_filter, pool)
                                      : denoise(of_filter, kernel.fit, pool);
 }

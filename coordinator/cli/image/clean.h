@@ -28,7 +28,7 @@ namespace bandsaw::coordinator {
 struct ToClean {
   const Image& mean;  ///< as rendered: the mean of all samples of each pixel
   /// The mean of about half of each pixel's samples, by which the noise is estimated. std::nullopt:
-  /// make_clean() renders half of the samples again.
+  /// make_clean() renders further samples (CleanJobs::further).
   std::optional<Film::FirstPart> first;
   const JobSpec& spec;        ///< specification of the image's job
   std::uint64_t samples = 0;  ///< per pixel

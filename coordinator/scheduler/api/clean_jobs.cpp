@@ -1,6 +1,6 @@
 // clean_jobs() returns the jobs whose images the denoiser needs in addition to the image itself:
 // the guides (images of the albedo, and of the normals and distances), and for few samples also an
-// image of half of the samples. The request id of such a job is a hash of what it renders. So if
+// image of further samples. The request id of such a job is a hash of what it renders. So if
 // several users need the same image, they share one job.
 
 #include "coordinator/scheduler/api/clean_jobs.h"
@@ -18,6 +18,10 @@
 
 namespace bandsaw::coordinator {
 namespace {
+
+/// The seed of further samples is the image's seed with these bits inverted. The number is
+/// arbitrary; it is large, so that users rarely render the same scene with that seed.
+constexpr std::uint64_t kFurtherSeed = 0x6d4f3a9c51e7;
 
 /// Returns a job like `of`, but with another integrator and number of samples, and a name with this
 /// suffix.
@@ -57,13 +61,19 @@ std::uint64_t guide_samples(std::uint64_t samples) {
   return std::min(samples, std::clamp(quarter, kMinGuideSamples, kMaxGuideSamples));
 }
 
+std::uint64_t further_samples(std::uint64_t samples) {
+  return samples <= kBlockSamples ? samples / 2 : 0;
+}
+
 CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples) {
   const std::uint64_t of_guides = guide_samples(samples);
   CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, of_guides, " (guide: albedo)"),
                  .shape = beside(of, kGuideShape, of_guides, " (guide: shape)"),
-                 .half = std::nullopt};
-  if (samples <= kBlockSamples) {
-    jobs.half = beside(of, of.settings.integrator, samples / 2, " (half of the samples)");
+                 .further = std::nullopt};
+  if (const std::uint64_t further = further_samples(samples); further > 0) {
+    JobSpec other_seed = of;
+    other_seed.settings.seed ^= kFurtherSeed;
+    jobs.further = beside(other_seed, of.settings.integrator, further, " (further samples)");
   }
   return jobs;
 }

@@ -2,8 +2,8 @@
 
 // The jobs that the denoiser (renderlib/denoise) needs in addition to the job of the image. Two of
 // them render the guides: an image of the albedo, and an image of the normals and distances of the
-// surfaces. For an image of few samples, a third job renders half of its samples. Used by
-// `--denoise` of the commands and by the dashboard.
+// surfaces. For an image of few samples, a third job renders further samples. Used by `--denoise`
+// of the commands and by the dashboard.
 
 #include <cstdint>
 #include <optional>
@@ -39,11 +39,16 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
 struct CleanJobs {
   JobSpec albedo;
   JobSpec shape;  ///< normals and distances
-  /// Renders the first half of the image's samples again, because the denoiser estimates the noise
-  /// from a part of the samples. std::nullopt: not needed, because a job with more samples than
-  /// one block (8) has kept the sum of the first part of its samples.
-  std::optional<JobSpec> half;
+  /// Renders half as many samples as the image has, with another seed. The denoiser estimates the
+  /// noise from two independent parts of the samples, but the samples of one block (8) or less are
+  /// only kept as a sum. The further samples are the other part (renderlib/denoise/halves.h,
+  /// add_samples). std::nullopt: not needed, because the job has more than one block of samples.
+  std::optional<JobSpec> further;
 };
+
+/// Returns the number of further samples for an image of `samples` samples per pixel, as above; 0:
+/// not needed.
+std::uint64_t further_samples(std::uint64_t samples);
 
 /// Returns the jobs for the image of a job that has `samples` samples per pixel, at least 2. Their
 /// request ids depend only on what they render. So all users and all images of the same scene, size

@@ -67,6 +67,36 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   EXPECT_NEAR(clean.total.mean, 1, 0.01);
 }
 
+// An image of 4 samples and 2 further samples, each sample with the standard deviation 0.2. The
+// image as rendered has the error 0.1, and all samples together have the error 0.2 / sqrt(6). The
+// tolerance is as above.
+TEST(Halves, FurtherSamplesMakeThePartsOfAnImageWithoutParts) {
+  test::Random random(5);
+  const auto noisy = [&](double deviation) {
+    Image image{kSide, kSide, {}};
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      image.pixels.push_back(gray(1 + static_cast<float>(deviation) * gaussian(random)));
+    }
+    return image;
+  };
+  Image rendered = noisy(0.1);
+  rendered.pixels[7] = gray(std::numeric_limits<float>::infinity());
+  const Image flat{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(0.5f))};
+  DenoiseInput input;
+  input.albedo = input.shape = flat;
+  add_samples(rendered, 4, noisy(0.2 / std::sqrt(2)), 2, input);
+  EXPECT_EQ(input.mean.pixels[7], rendered.pixels[7]);
+  EXPECT_EQ(input.first_share[7], 0);
+  EXPECT_FLOAT_EQ(input.first_share[8], 1.0f / 3);
+  EXPECT_FLOAT_EQ(second_part(input).pixels[8].r, rendered.pixels[8].r);
+  Pool pool(1);
+  const Denoised same =
+      with_error_of_halves(input, input.mean, input.first, second_part(input), pool);
+  EXPECT_NEAR(same.total.rmse_raw, 0.1, 0.005);
+  EXPECT_NEAR(same.total.rmse_clean, 0.2 / std::sqrt(6), 0.005);
+  EXPECT_EQ(denoise(input, fit, pool).image.pixels[7], rendered.pixels[7]);
+}
+
 // The two parts of the samples are 1.1 and 0.9, so the error of their mean is 0.1.
 TEST(Halves, LeaveOutPixelsThatAreNotFinite) {
   const Image mean{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};

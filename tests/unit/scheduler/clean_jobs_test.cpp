@@ -1,6 +1,6 @@
 // The additional jobs that a denoised ("clean") image needs. Two jobs render its guides, which are
 // images of the albedo and of the shape of the surfaces. If the image has at most one block of 8
-// samples, a third job renders half of its samples.
+// samples, a third job renders further samples with another seed.
 
 #include "coordinator/scheduler/api/clean_jobs.h"
 
@@ -27,13 +27,14 @@ TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
   EXPECT_EQ(many.shape.settings.integrator, kGuideShape);
   EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{16}));
   EXPECT_EQ(many.albedo.settings.seed, 3u);
-  EXPECT_FALSE(many.half);
+  EXPECT_FALSE(many.further);
   const CleanJobs few = clean_jobs(job(), 7);
   EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{7}));
-  ASSERT_TRUE(few.half);
-  EXPECT_EQ(few.half->stop, StopRule(StopAtSamples{3}));
-  EXPECT_FALSE(clean_jobs(job(), 9).half) << "9 samples are two blocks";
-  EXPECT_EQ(few.half->settings.integrator, Integrator::kPath);
+  ASSERT_TRUE(few.further);
+  EXPECT_EQ(few.further->stop, StopRule(StopAtSamples{3}));
+  EXPECT_NE(few.further->settings.seed, 3u) << "the samples must be independent";
+  EXPECT_FALSE(clean_jobs(job(), 9).further) << "9 samples are two blocks";
+  EXPECT_EQ(few.further->settings.integrator, Integrator::kPath);
 }
 
 // The quarter is rounded down to a power of two and limited to 8 to 32 samples. The guides never
