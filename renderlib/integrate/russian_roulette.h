@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// Russian roulette may end a path from this scattering on, counted from 1.
+/// Number of the first scattering after which Russian roulette may end a path, counted from 1.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
 /// A path always survives if its throughput, divided by PathState::compression, is at least this.

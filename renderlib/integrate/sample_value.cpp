@@ -1,5 +1,5 @@
-// Selects the function of the integrator: path tracing, or a picture of the first surface (normal,
-// depth, albedo, guides of the denoiser, ambient occlusion).
+// Selects the function of the integrator: path tracing, a guide (an auxiliary image for the
+// denoiser), or a picture of the first surface (normal, depth, albedo or ambient occlusion).
 
 #include "renderlib/integrate/sample_value.h"
 

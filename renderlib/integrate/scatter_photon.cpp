@@ -25,8 +25,8 @@ constexpr double kSameDirection = 1e-20;
 /// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
 /// the side of the photon. These surfaces use the shading normal, except where it would send light
 /// to the wrong side of the surface. The normal that a path uses depends on the direction from
-/// which the path comes (for_mirror() and for_glass() in material/bsdf.cpp). For a photon this is
-/// the direction to be sampled, so both normals have to be tried.
+/// which the path comes (for_mirror() and for_glass() in material/bsdf.cpp). The photon leaves in
+/// that direction. The direction is still to be sampled, so both normals have to be tried.
 struct PhotonNormals {
   Vec3 geometric;
   Vec3 shading;
@@ -64,8 +64,8 @@ PhotonScattering path_value(const Scene& scene, const SurfacePoint& point, const
 }
 
 /// Scatters at a mirror or at smooth glass about a normal. `bsdf`: the BSDF seen from `in`;
-/// `number` selects reflection or refraction. Returns std::nullopt if a path would use the other
-/// normal.
+/// `number` selects reflection or refraction. Returns std::nullopt if no path is scattered to `in`
+/// about this normal.
 std::optional<PhotonScattering> scatter_about(const Scene& scene, const SurfacePoint& point,
                                               const Bsdf& bsdf, const Vec3& in,
                                               const PhotonNormals& normals, const Vec3& normal,

@@ -1,7 +1,7 @@
 #pragma once
 
-// Random points on surfaces, uniform by area: where photons start (photon_start.h and
-// indirect_photons.h).
+// Random points on surfaces, at which photons start (photon_start.h and indirect_photons.h). The
+// points are uniform by area, except on ellipsoids.
 
 #include <cstddef>
 #include <optional>

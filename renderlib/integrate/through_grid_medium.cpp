@@ -1,7 +1,8 @@
 // The path crosses the segment by delta tracking (medium/tracking.h). At the collision that
-// scatters the path, a light and a direction are sampled. At the maximum depth, in local shading
-// and in media that do not scatter, the throughput of the path is multiplied by the estimated
-// transmittance instead.
+// scatters the path, a light and a direction are sampled. In three cases the path is not scattered,
+// and its throughput is multiplied by the estimated transmittance instead: at the maximum depth, in
+// media that do not scatter, and in local shading (the integrator `direct`, which leaves out
+// indirect light).
 
 #include "renderlib/integrate/through_grid_medium.h"
 
@@ -26,7 +27,7 @@ struct Segment {
 
   const GridMedium& medium() const { return *part.varying; }
   double length() const { return part.end - part.begin; }
-  /// Returns the point at a distance from the begin of the segment.
+  /// Returns the point at a distance from the beginning of the segment.
   Vec3 at(double distance) const { return ray.origin + ray.direction * (part.begin + distance); }
   /// Returns random numbers of the segment; group_medium() lists their uses.
   Sample4 numbers(std::uint32_t which) const {

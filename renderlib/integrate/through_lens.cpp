@@ -1,7 +1,8 @@
-// A small light far beyond the plane of focus is a disk in the image, which few camera rays of a
-// pixel hit. So a light is also sampled from the point in focus. The line from the light through
-// that point crosses the lens at the point from which a shadow ray to the light is traced. The
-// estimate is weighted against the camera ray by MIS.
+// A small light far beyond the plane of focus is a disk in the image, and few camera rays of a
+// pixel hit the light. So a light is also sampled from the point in focus, the point of the plane
+// of focus through which the camera ray passes. The line from the light through the point in focus
+// crosses the lens. From the place where it crosses the lens, a shadow ray is traced to the light.
+// The estimate is weighted against the camera ray by MIS.
 
 #include "renderlib/integrate/through_lens.h"
 

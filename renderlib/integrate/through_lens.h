@@ -2,10 +2,10 @@
 
 // Light sampling through a lens, for lights that are out of focus. A small light far behind the
 // plane of focus becomes a disk in the image: few rays of a pixel hit it, but they dominate the
-// pixel's variance. So a light is also sampled from the point in focus, as from any other receiver
-// (light/lights.h). The line from the light sample through the point in focus must cross the lens;
-// otherwise the pixel does not see the sample. The estimate and the emission hit by the camera ray
-// itself are weighted by the power heuristic.
+// pixel's variance. So a light is also sampled from the point in focus, the point of the plane of
+// focus through which the camera ray passes. The line from the light sample through the point in
+// focus must cross the lens; otherwise the pixel does not see the sample. The estimate and the
+// emission hit by the camera ray itself are weighted by the power heuristic.
 
 #include "renderlib/camera/lens_view.h"
 #include "renderlib/integrate/path_state.h"

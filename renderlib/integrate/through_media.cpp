@@ -1,6 +1,6 @@
 // Walks along the segments of the ray that lie in media (medium_traversal.h). In a homogeneous
-// segment it samples a light from one distance, which is chosen with regard to up to four lights
-// (pivots), and then decides whether the path is scattered in the segment or passes.
+// segment, a light is sampled from one point. The distance of this point along the ray is chosen
+// with regard to up to four lights (pivots). Then the path is scattered in the segment or passes.
 
 #include "renderlib/integrate/through_media.h"
 

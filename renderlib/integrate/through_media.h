@@ -8,8 +8,8 @@
 // (medium/equiangular.h). Media that vary in space are crossed by delta tracking
 // (through_grid_medium.h).
 //
-// Emission that the scattered path hits is weighted against light sampling by the power heuristic,
-// over the product of distance pdf and direction pdf.
+// Emission that the scattered path hits is weighted against light sampling by the power heuristic.
+// The pdfs in it are products of a distance pdf and a direction pdf.
 
 #include "renderlib/integrate/path_state.h"
 
@@ -24,8 +24,8 @@ enum class MediumEvent {
 
 /// Advances the path along its ray by `length` (scene units, > 0, may be infinite). `depth` is the
 /// number of the path's next scattering, which happens here if a medium scatters the path. At the
-/// maximum depth and with local shading the path is not scattered. The scene MUST have media
-/// (`SceneFeatures::media`).
+/// maximum depth, and in local shading (the integrator `direct`), the path is not scattered. The
+/// scene MUST have media (`SceneFeatures::media`).
 MediumEvent through_media(const PathContext& context, double length, std::uint32_t depth,
                           PathState& path);
 

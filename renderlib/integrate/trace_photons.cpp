@@ -1,6 +1,6 @@
-// A photon starts at a caster with the light of a lamp, is scattered at casters, and is stored at
-// the first receiver of caustics that it meets. share_on_surface() measures with short rays how
-// much of a photon's disk lies on surfaces.
+// A photon starts at a caster (a surface of metal or glass that may cast a caustic) with the light
+// of a lamp, is scattered at casters, and is stored at the first receiver of caustics that it
+// meets. share_on_surface() measures with short rays how much of a photon's disk lies on surfaces.
 
 #include "renderlib/integrate/trace_photons.h"
 
@@ -206,8 +206,8 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon, const Ve
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
   const Vec3 centre = origin + vec3(photon.position);
   const Basis basis = orthonormal_basis(vec3(photon.normal));
-  // The points of each disk are turned by another angle, so that they miss no edge of a scene whose
-  // edges are parallel to its axes.
+  // The points of each disk are turned by a different angle, so that edges which are parallel to an
+  // axis of the world are not missed.
   const double first_turn = random_number_of(photon);
   const auto is_there = [&](double turn, double distance) {
     const SinCos angle = sincos_turns(turn + first_turn);

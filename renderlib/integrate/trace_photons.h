@@ -1,7 +1,8 @@
 #pragma once
 
-// Photons of caustics: light of emissive surfaces that one or more casters (casters.h), and nothing
-// else, send to a surface that receives caustics (caustics.h).
+// Photons of caustics. They carry light of emissive surfaces to a surface that receives caustics
+// (caustics.h). On the way, one or more casters (surfaces of metal or glass, casters.h) scatter the
+// light, and nothing else does.
 
 #include <cstdint>
 #include <vector>

@@ -16,8 +16,8 @@ namespace bandsaw {
 namespace {
 
 /// The source of background light is placed at this many times the length of the longest ray of the
-/// path. This is so far away that its direction is the same for all points of a cell of the field
-/// (guiding/guiding_cell.h).
+/// path. The source is then so far away that it lies in the same direction from all points of a
+/// cell of the guiding field (guiding/guiding_cell.h).
 constexpr double kFar = 1e6;
 
 /// Maximum number of vertices of a path that are recorded. It bounds the memory of the training.
@@ -80,7 +80,8 @@ bool scatter_and_remember(const PathContext& context, const SurfacePoint& point,
   return goes_on;
 }
 
-/// Traces the path until it ends, as trace_path() does without splitting, and records its vertices.
+/// Traces the path until it ends, and records its vertices. The steps are those of trace_path()
+/// (path.cpp), but the path never continues in several directions.
 void trace_and_remember(const PathContext& context, TrainingPath& path) {
   const Scene& scene = context.scene;
   PathState& state = path.state;

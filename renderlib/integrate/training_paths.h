@@ -1,7 +1,8 @@
 #pragma once
 
 // Training of path guiding by paths from the camera: they record from which directions they found
-// light. guiding_training.cpp fits the field to these records.
+// light. guiding_training.cpp fits the guiding field to these records. The field tells for each
+// place from which directions light arrives.
 
 #include <cstdint>
 #include <vector>
@@ -56,8 +57,8 @@ bool append_chunks(std::uint32_t first, std::uint32_t last, const Preparation& p
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
                                const TrainingChunk& chunk, const PathOptions& options);
 
-/// Returns the camera ray of a path: through a random place of the image, at a random time of the
-/// exposure.
+/// Returns the camera ray of path number `sample`. The ray passes through a random place of the
+/// image, whose size is in `key`, at a random time of the exposure.
 Ray training_ray(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
                  const PixelSampler& sampler, std::uint64_t sample);
 

@@ -69,7 +69,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
 }
 
 /// Follows the photon until it arrives at a surface whose directions can be guided, and adds a
-/// record for this arrival, if the photon was scattered fewer than `longest` times before.
+/// record for this arrival. The photon ends without a record once it was scattered `longest` times.
 /// `photons` is the number of photons that share the power. If `mapped` is true, photon maps find
 /// the light that arrives at receivers of caustics, so arrivals there are not recorded.
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,

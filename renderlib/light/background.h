@@ -1,7 +1,7 @@
 #pragma once
 
 // The radiance of the background, which rays that leave the scene see. Path tracing adds it
-// (integrate/path.cpp); light sampling covers only its non-uniform part
+// (integrate/path.cpp); light sampling covers only the non-uniform part of an environment map
 // (light/environment_light.h).
 
 #include <optional>

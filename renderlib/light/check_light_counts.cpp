@@ -53,8 +53,8 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
   if (numbered(geometry, emits) + delta_lights <= kMaxLights) {
     return absl::OkStatus();
   }
-  // An emission whose texture is black everywhere does not count. This is examined only if it can
-  // change the result, because it takes long.
+  // An emission whose texture is black everywhere does not count. The textures take long to
+  // examine, so they are examined only if the first count is too large.
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const auto mean_of = [&](TextureId texture) { return mean(textures, texture); };
     emits[i] = emits[i] && !is_black(mean_emission(materials, id(i), mean_of).radiance);

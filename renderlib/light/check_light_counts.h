@@ -18,8 +18,9 @@ namespace bandsaw {
 inline constexpr std::uint64_t kMaxLights = (std::uint64_t{1} << 31) - 1;
 
 /// Returns INVALID_ARGUMENT if more than kMaxLights numbers are needed: one for each shape that is
-/// not in an instance, one for each primitive of each instance that emits light anywhere, and
-/// `delta_lights` more. Indices of meshes, groups, materials and textures MUST be valid.
+/// not in an instance, one for each primitive of each instance that emits light anywhere, and one
+/// for each of the `delta_lights` lights without size. Indices of meshes, groups, materials and
+/// textures MUST be valid.
 absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Material> materials,
                                 absl::Span<const Texture> textures, std::uint64_t delta_lights);
 

@@ -14,8 +14,8 @@ namespace {
 
 /// Within this bound, squares of distances do not overflow a double.
 constexpr double kMaxCoordinate = 1e30;
-/// Tolerances of the squared length of unit vectors, and of their dot products. They admit vectors
-/// that were normalised in double and rounded a few times.
+/// Tolerances of the squared length of unit vectors, and of the dot products of vectors at right
+/// angles. They admit vectors that were normalised in double and rounded a few times.
 constexpr double kUnit = 1e-9;
 constexpr double kOrthonormal = 1e-9;
 

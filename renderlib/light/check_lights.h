@@ -1,6 +1,7 @@
 #pragma once
 
-// Validation of environment maps and delta lights, a part of the validation of scenes.
+// Validation of environment maps and delta lights (lights without size), a part of the validation
+// of scenes.
 
 #include <vector>
 
@@ -12,8 +13,8 @@
 namespace bandsaw {
 
 /// Checks the background's environment and the delta lights. `textures` MUST be valid. Returns
-/// INVALID_ARGUMENT naming field, bound and value: "light[3]: spot.intensity: must be finite and >=
-/// 0, is [...]".
+/// INVALID_ARGUMENT with a message that names field, bound and value: "light[3]: spot.intensity:
+/// must be finite and >= 0, is [...]".
 absl::Status check_lights(const Background& background, absl::Span<const Texture> textures,
                           const std::vector<DeltaLight>& lights);
 

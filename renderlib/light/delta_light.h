@@ -47,9 +47,11 @@ inline constexpr double kMaxHalfImage = 1e9;
 /// A point light restricted to a cone: full intensity within the inner angle, none beyond the outer
 /// angle, and a fall-off between them.
 struct SpotLight {
+  /// The fall-off between the angles. t is a ramp that is linear in the cosine: 0 at the outer
+  /// angle and 1 at the inner angle.
   enum class Falloff : std::uint8_t {
-    kSquare,       ///< t^2, where t is the ramp that is linear in the cosine (glTF)
-    kSmooth,       ///< 3 t^2 - 2 t^3, with t as for kSquare
+    kSquare,       ///< t^2 (glTF)
+    kSmooth,       ///< 3 t^2 - 2 t^3
     kLinearAngle,  ///< linear in the angle
   };
   Vec3 position;
@@ -63,9 +65,9 @@ struct SpotLight {
   std::optional<ProjectedImage> image = std::nullopt;
 };
 
-/// Projects an image from a point. Where its axis and a direction enclose the angle t, the radiant
-/// intensity is image * intensity / cos(t)^3: on a plane perpendicular to the axis at distance 1
-/// the irradiance is image * intensity. The intensity is 0 beyond the image's edges and behind the
+/// Projects an image from a point. In a direction at the angle t to the axis, the radiant intensity
+/// is image * intensity / cos(t)^3. So the irradiance on the plane perpendicular to the axis at
+/// distance 1 is image * intensity. The intensity is 0 beyond the image's edges and behind the
 /// light.
 struct ProjectorLight {
   Vec3 position;

@@ -1,8 +1,8 @@
 #pragma once
 
 // Sampling of ellipsoids as area lights. An ellipsoid is the image of the unit sphere under an
-// affine map. A sample is the image of a uniform point of the sphere. Its area pdf is that of the
-// sphere divided by the factor by which the map scales areas at this point.
+// affine map. A sample is the image of a uniform point of the sphere. The area pdf of the sample is
+// the area pdf of the sphere, divided by the factor by which the map scales areas at the point.
 
 #include <optional>
 

@@ -28,7 +28,7 @@ inline std::optional<Emission> emission_of(const Material& material) {
                                                      : std::optional(material.emission);
 }
 
-/// The emission of a material as a whole, which may be a mixture.
+/// The emission of a material as a whole. The material may be a mixture.
 struct MeanEmission {
   Rgb radiance;            ///< a mean over the surface; an estimate for most textures
   bool one_sided = false;  ///< no part emits to the side opposite to the geometric normal
@@ -91,8 +91,9 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
 
 /// Returns the radiance emitted by material `id`, for light sampling. If the material is a mixture
 /// or partly transparent, a random choice of each sample decides which part is there, or whether
-/// the surface is there. The result is the expected value over these choices. A hidden lamp
-/// (material/opacity.h) emits with opacity 1, but not towards the camera.
+/// the surface is there. The result is the expected value over these choices. A hidden lamp (an
+/// emitter that the camera does not see, material/opacity.h) emits as if its opacity were 1, but
+/// emits nothing if `to_camera` is true.
 inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
                               absl::Span<const Texture> textures, const SurfacePoint& point,
                               const Vec3& direction, bool to_camera) {

@@ -47,8 +47,8 @@ EnvironmentPlace place_of(const Environment& environment, absl::Span<const Textu
 Vec3 direction_of(const Environment& environment, absl::Span<const Texture> textures,
                   const EnvironmentPlace& place);
 
-/// The four texels around a position and its bilinear weights. Latitude-longitude images wrap
-/// around horizontally; all other edges are clamped.
+/// Columns and rows of the four texels around a position, and the bilinear weights of the position.
+/// Latitude-longitude images wrap around horizontally; all other edges are clamped.
 struct FourTexels {
   std::uint32_t left = 0;
   std::uint32_t right = 0;
@@ -57,6 +57,7 @@ struct FourTexels {
   double fx = 0;  ///< weight of the right column
   double fy = 0;  ///< weight of the lower row
 };
+/// Returns the four texels around `place`. `image` is the image that contains `place`.
 FourTexels texels_around(const Environment& environment, const ImageTexture& image,
                          const EnvironmentPlace& place);
 

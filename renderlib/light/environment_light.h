@@ -3,11 +3,11 @@
 // Importance sampling of an environment map, as one of the lights of a scene (light/lights.h).
 //
 // The excess of a texel is its luminance minus the mean over all directions, clamped at zero. The
-// pdf is proportional to the bilinear interpolation of the excess, also within each texel and exact
-// up to rounding. On a face of a cube map, the pdf by area is proportional to the interpolation of
-// the excess times the texel's solid angle. The uniform part of the light is left to BSDF sampling
-// (MIS compensation: Karlik et al. 2019, "MIS Compensation: Optimizing Sampling Techniques in
-// Multiple Importance Sampling").
+// pdf is proportional to the bilinear interpolation of the excess. Apart from rounding errors, the
+// proportion is exact everywhere, also within a texel. On a face of a cube map, the pdf by area is
+// proportional to the interpolation of the excess times the texel's solid angle. The uniform part
+// of the light is left to BSDF sampling (MIS compensation: Karlik et al. 2019, "MIS Compensation:
+// Optimizing Sampling Techniques in Multiple Importance Sampling").
 
 #include <cstdint>
 

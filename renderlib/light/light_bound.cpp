@@ -16,8 +16,8 @@ namespace {
 /// value is a little less than 1, so that rounding does not exclude directions at the cone's rim.
 constexpr double kJustFacing = 1 - 0x1p-40;
 
-/// Minimum distance of a light from a ray, relative to the distance to the light; the same as in
-/// medium/equiangular.cpp.
+/// Minimum distance of a light from a ray, as a part of the distance between the light and the
+/// origin of the ray.
 constexpr double kMinAside = 1e-6;
 
 /// Upper bound of an importance, so that sums and ratios stay finite.

@@ -25,7 +25,8 @@ struct LightBound {
   double intensity = 0;
   Vec3 axis{0, 0, 1};      ///< unit; axis of the cone that contains the normals of the emitters
   double cos_spread = -1;  ///< cosine of the cone's half-angle (theta_o in the paper)
-  /// Cosine of the largest angle to its normal at which an emitter emits (theta_e in the paper).
+  /// Cosine of the largest angle, to the normal of an emitter, at which the emitter emits (theta_e
+  /// in the paper).
   double cos_reach = 0;
   bool two_sided = false;  ///< the cone around -axis emits in the same way
   bool flat = false;       ///< all emitters lie in one plane perpendicular to the axis

@@ -11,15 +11,15 @@
 
 namespace bandsaw {
 
-/// Upper bound of the irradiance from an infinitely distant light; the same everywhere.
+/// Upper bound of the irradiance from an infinitely distant light. It is the same everywhere.
 struct DistantBound {
   double irradiance = 0;
   /// Unit vector to the light; std::nullopt for light from all directions.
   std::optional<Vec3> direction;
 };
-/// Returns an upper bound of the irradiance from the light at the receiver. Returns 0 if
-/// Receiver::within is set. Then the receiver is the point on which the camera's lens is focused,
-/// and no distant lights are sampled for this point.
+/// Returns an upper bound of the irradiance from the light at the receiver, a point that receives
+/// light (light/receiver.h). Returns 0 if Receiver::within is set. Then the receiver is the point
+/// on which the camera's lens is focused, and no distant lights are sampled for this point.
 double importance(const DistantBound& bound, const Receiver& receiver);
 /// A ReceiverSegment is a piece of a ray in a medium. Returns the irradiance of the bound times a
 /// length: the length of the segment, or 1 / ReceiverSegment::extinction if that is shorter.

@@ -33,8 +33,8 @@ class LightTree {
   explicit LightTree(const std::vector<LightBound>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Returns the importance of all lights together. In all functions, `From` is `Receiver` or
-  /// `ReceiverSegment`.
+  /// Returns the importance of all lights together. In all functions, `From` is `Receiver` (a point
+  /// that receives light) or `ReceiverSegment` (a segment of a ray in a medium).
   template <typename From>
   double importance(const From& receiver) const;
   /// Selects a light. `number` is in [0, 1). Returns std::nullopt if no light reaches the receiver.

@@ -1,6 +1,7 @@
-// Builds a LightTree: divides the lights recursively at the cheapest split between bins on each
-// axis. The cost is that of Conty Estevez and Kulla 2018 (light_tree.h), and depends on intensity,
-// directions and extent of both halves.
+// Builds a LightTree: divides the lights recursively. The lights are sorted into bins along each
+// axis, and the cheapest split between two bins of an axis is taken. The cost is that of Conty
+// Estevez and Kulla 2018 (light_tree.h), and depends on intensity, directions and extent of both
+// halves.
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,7 @@ namespace {
 struct LightCone {
   Vec3 axis{0, 0, 1};
   double spread = 0;  ///< half-angle of the cone, in [0, pi]
-  /// Nothing is emitted at a larger angle to a normal; in [0, pi / 2].
+  /// Largest angle to a normal at which light is emitted; in [0, pi / 2].
   double reach = 0;
   bool two_sided = false;  ///< the cone around -axis emits in the same way
 };

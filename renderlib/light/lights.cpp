@@ -18,7 +18,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the pivot of a delta light: its position, or `distant` for a directional light.
+/// Returns the pivot of a delta light, around which distances along a ray are sampled. It is the
+/// position of the light, or `distant` for a directional light.
 LightPivot pivot_of(const DeltaLight& light) {
   return std::visit(
       [](const auto& kind) -> LightPivot {

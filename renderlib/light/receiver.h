@@ -27,8 +27,8 @@ struct ReceiverSegment {
 
 /// A point that receives light. With a normal, it is on a surface and receives light on one side.
 /// Without a normal, it is in a medium and receives light from all directions. If `within` is set,
-/// it is instead the point on which the camera's lens is focused. Light from beyond this point
-/// passes through the point to the lens (integrate/through_lens.h).
+/// the receiver is instead the point on which the camera's lens is focused. Light from beyond this
+/// point passes through the point to the lens (integrate/through_lens.h).
 struct Receiver {
   Vec3 position;
   /// Unit; light arrives only from directions with a positive cosine to it.

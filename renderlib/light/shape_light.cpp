@@ -34,9 +34,10 @@ std::optional<SphericalTriangle> seen_triangle(const ShapeView& shape, const Vec
              : std::nullopt;
 }
 
-/// Returns the coordinates of a uniform point. In a parallelogram the point is (u, v) itself. In a
-/// triangle the square root makes the distance from `a` uniform in area (Pharr, Jakob and
-/// Humphreys, "Physically Based Rendering", A.5.4).
+/// Returns the coordinates, along ShapeView::u and v, of a point that is uniform by area. In a
+/// parallelogram the point is (u, v) itself. In a triangle the square root makes the distance from
+/// the first vertex uniform in area (Pharr, Jakob and Humphreys, "Physically Based Rendering",
+/// A.5.4).
 Vec2 uniform_on(Kind kind, double u, double v) {
   if (kind == Kind::kQuad) {
     return {u, v};

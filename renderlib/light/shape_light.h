@@ -47,8 +47,8 @@ struct Ball {
   double radius = 0;
 };
 Ball bounds(const ShapeView& shape);
-/// Returns a sphere that bounds a primitive of an instance that moves (geometry/placement.h) during
-/// the whole of Geometry::shutter.
+/// Returns a sphere that bounds the primitive `id` during the whole of Geometry::shutter. The
+/// primitive belongs to an instance, which may move (geometry/placement.h).
 Ball moving_ball(const Geometry& geometry, PrimitiveId id);
 
 /// A point sampled on a shape.
