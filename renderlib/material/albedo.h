@@ -1,6 +1,7 @@
 #pragma once
 
-// Albedo of surfaces, for the integrator `albedo`, the guides of the denoiser and path guiding.
+// Albedo of surfaces. The integrator `albedo`, the guides (auxiliary images for the denoiser) and
+// path guiding use it.
 
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"

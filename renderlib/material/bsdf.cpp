@@ -108,6 +108,7 @@ std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double l
   return sample;
 }
 
+/// Returns the BSDF of a metal with this fuzz; a mirror if `fuzz` is below kMinFuzz.
 Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, const Vec3& wo) {
   const SidedNormals sided = for_mirror(normal, wo);
   const Vec3 mirror = normalize(mirrored(wo, sided.shading));
@@ -146,6 +147,8 @@ Bsdf glass_at(double index, const std::optional<Facets>& facets, const SurfacePo
                              eta, *facets};
 }
 
+/// Returns the BSDF of a metal that is given by its index of refraction. `specular` and `facets`
+/// are those at the point. Where the metal has no facets, it is a mirror.
 Bsdf conductor_at(const Conductor& metal, const Rgb& specular, const std::optional<Facets>& facets,
                   const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo) {
   if (!facets) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Results of sampling and evaluating a BSDF; conventions are in material/bsdf.h.
+// Results of sampling and evaluating a BSDF. wo is the direction towards the camera, and wi the
+// direction towards the incoming light. Values include the cosine (material/bsdf.h).
 
 #include "renderlib/math/rgb.h"
 #include "renderlib/math/vec.h"

@@ -20,7 +20,7 @@ struct RoughConductorBsdf {
   Basis frame;
   Vec3 wo;
   Facets facets;
-  std::optional<ConductorIndex> index;  ///< as Conductor::index
+  std::optional<ConductorIndex> index;  ///< without it, all light is reflected
   Rgb specular;                         ///< factor of the reflection
 };
 

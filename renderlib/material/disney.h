@@ -35,7 +35,7 @@ inline Facets principled_facets(double roughness, double anisotropic) {
           Microfacets::Distribution::kGgx, Microfacets::Masking::kSeparable};
 }
 
-/// Returns a colour of luminance 1 with the hue of `base`; white for black.
+/// Returns a colour of luminance 1 with the hue of `base`; white if `base` is black.
 inline Rgb hue_of(const Rgb& base) {
   const float bright = luminance(base);
   return bright > 0 ? base * (1 / bright) : gray(1);
@@ -47,7 +47,7 @@ inline Rgb schlick(const Rgb& f0, double cos_i) {
   return f0 * (1 - rim) + gray(rim);
 }
 
-/// The diffuse light of the principled BSDFs.
+/// Parameters of the diffuse light of the principled BSDFs.
 struct DisneyDiffuse {
   Rgb base;
   double roughness = 0.5;

@@ -58,10 +58,10 @@ inline double conductor_fresnel(double cos_i, double eta, double k) {
   return 0.5 * (perpendicular + parallel);
 }
 
-/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h). The product of
-/// the result, facet_pdf_over_cos() of the facet, and the facet's transmittance 1 - F is the pdf of
-/// wi by refraction at that facet. o is wo, i is wi, and h is the normal of the facet. o_h and i_h
-/// are dot(o, h) > 0 and dot(i, h) < 0.
+/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h). The pdf of wi
+/// by refraction at a facet is this result, times facet_pdf_over_cos() of the facet, times the
+/// facet's transmittance 1 - F. o is wo, i is wi, and h is the normal of the facet. o_h and i_h are
+/// dot(o, h) > 0 and dot(i, h) < 0.
 inline double refraction_jacobian(double o_h, double i_h, double eta) {
   const double along_half = o_h + eta * i_h;
   return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);

@@ -18,8 +18,8 @@ GgxAlbedo mixed(const GgxAlbedo& a, const GgxAlbedo& b, double t) {
 
 /// Returns the albedo for a direction with this cosine to the normal. It is integrated by the
 /// midpoint rule over the unit square from which visible normals are sampled. The integrand is the
-/// shadowing term, which is at most 1. The second number, v, samples the tail of the distribution
-/// where it is near 1, so points are denser there. With these numbers of points the table is
+/// shadowing term, which is at most 1. The second number is v. Values of v near 1 sample the tail
+/// of the distribution, so points are denser near v = 1. With these numbers of points the table is
 /// within 2e-3 of the integral (tests).
 GgxAlbedo integrated(double cos_theta, double alpha) {
   constexpr int kTurns = 16;

@@ -15,7 +15,8 @@ struct GgxAlbedo {
   double operator()(double f0) const { return f0 * white + (1 - f0) * rim; }
 };
 
-/// Interpolated table over cosine and roughness; within 2e-3 of the integral (tests).
+/// Interpolated table over cosine and roughness. Its values differ from the integral by at most
+/// 2e-3, as tests check.
 class GgxAlbedoTable {
  public:
   GgxAlbedoTable();

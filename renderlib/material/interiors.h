@@ -52,7 +52,8 @@ class Interiors {
     return top != nullptr ? top->index : 1;
   }
 
-  /// Returns the glass that is present; kNothing if there is none.
+  /// Returns the material of the glass that is present, the one of highest priority; kNothing if
+  /// there is none.
   MaterialId there() const {
     const Entry* top = highest_except(kNothing);
     return top != nullptr ? top->id : kNothing;

@@ -21,8 +21,8 @@ struct Diffuse {
   TextureId reflectance{};
 };
 
-/// The mirror direction plus a uniform point in a ball of radius `fuzz` (Shirley et al., "Ray
-/// Tracing in One Weekend", 10.6).
+/// Metal that scatters light to the mirror direction plus a uniform point in a ball of radius
+/// `fuzz` (Shirley et al., "Ray Tracing in One Weekend", 10.6).
 struct Metal {
   TextureId reflectance{};                           ///< vertex colours multiply it
   double fuzz = 0;                                   ///< [0, 1]
@@ -67,8 +67,8 @@ struct Dielectric {
 struct Emissive {
   TextureId radiance{};
   bool one_sided = false;  ///< only to the side of the geometric normal
-  /// The camera does not see the surface, and it stops no light. Scattered rays that meet it from a
-  /// side to which it emits receive its radiance and go on.
+  /// The camera does not see the surface, and the surface stops no light. Scattered rays that meet
+  /// the surface from a side to which it emits receive its radiance and go on.
   bool hidden = false;
 };
 
@@ -140,8 +140,8 @@ struct ThinDielectric {
   bool free_passage = false;         ///< light that passes does not count towards max_depth
 };
 
-/// Lambertian reflection and transmission. Where their sum exceeds 1, both are scaled. Vertex
-/// colours multiply both.
+/// Lambertian reflection and transmission. Where reflectance and transmittance add up to more than
+/// 1, both are scaled down. Vertex colours multiply both.
 struct DiffuseTransmission {
   TextureId reflectance{};
   TextureId transmittance{};
@@ -187,8 +187,8 @@ struct ThinPrincipled {
   Number diff_trans = {};
 };
 
-/// A mixture: at each point one of two materials is present (material/mixture.h). Both precede the
-/// mixture in the scene's list, and neither is a glass with a priority.
+/// A mixture: at each point one of two materials is present (material/mixture.h). Both materials
+/// precede the mixture in the scene's list, and neither of them is a glass with a priority.
 struct Mix {
   MaterialId a{};
   MaterialId b{};
@@ -233,7 +233,8 @@ struct Material {
                    ThinDielectric, DiffuseTransmission, Principled, ThinPrincipled, Mix>;
 
   Material() = default;
-  /// Implicit, so that a material without further properties is written as its kind.
+  /// The constructor is implicit, so that a kind can stand for a material without further
+  /// properties.
   template <class K>
   requires std::is_constructible_v<Kind, K> Material(K of_kind) : kind(std::move(of_kind)) {}
 

@@ -26,6 +26,7 @@ struct Local {
   Vec3 i;
 };
 
+/// Returns wo and wi in a frame whose z is `normal`.
 Local local(const Vec3& normal, const Vec3& wo, const Vec3& wi) {
   const Basis frame = orthonormal_basis(normal);
   return {frame.to_local(wo), frame.to_local(wi)};
@@ -109,7 +110,7 @@ void add_below(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
 }
 
 /// Sets the lobes' selection probabilities in proportion to estimates of their contributions
-/// towards wo.
+/// towards wo. `albedo` is the albedo of the reflection, seen along wo.
 void choose_chances(MetallicRoughnessBsdf& bsdf, const GgxAlbedo& albedo) {
   const double through = 1 - bsdf.coat_albedo;
   const double base = max_component(bsdf.base);

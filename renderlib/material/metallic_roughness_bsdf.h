@@ -49,7 +49,7 @@ struct MetallicRoughnessBsdf {
   std::array<double, 4> chances{};
 };
 
-/// Returns the BSDF; `normal` is on the side of wo, without the relief.
+/// Returns the BSDF. `normal` is on the side of wo, and the relief has not bent it.
 MetallicRoughnessBsdf metallic_roughness_at(const MetallicRoughness& material, const Relief& relief,
                                             absl::Span<const Texture> textures,
                                             const SurfacePoint& point, const SidedNormals& normal,

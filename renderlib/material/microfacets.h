@@ -3,9 +3,10 @@
 // Microfacet distributions at a point: GGX (Walter et al. 2007) and Beckmann (Beckmann and
 // Spizzichino 1963), isotropic or not. Directions are unit vectors in the local frame of the
 // surface, with z > 0. In this frame, z is the normal, and x lies along the uv coordinate u. For
-// both distributions, facet normals are sampled from the visible normals of GGX. With
-// t = tan^2 / alpha^2, Beckmann's density over GGX's is exp(-t) (1 + t)^2, which is at most 4 / e.
-// So the weights of samples stay bounded, and no error function is needed.
+// both distributions, facet normals are sampled from the visible normals of GGX. Let a be the angle
+// of a facet normal to z, and t = (tan a / alpha)^2. Then Beckmann's density divided by GGX's is
+// exp(-t) (1 + t)^2, which is at most 4 / e. So the weights of samples stay bounded, and no error
+// function is needed.
 
 #include <algorithm>
 #include <cmath>
@@ -47,14 +48,15 @@ inline std::optional<Facets> facets_at(const Microfacets& surface,
 }
 
 /// Returns (alpha_u x)^2 + (alpha_v y)^2 for w = (x, y, z). If both alphas are equal, this is
-/// alpha^2 tan^2 z^2.
+/// (alpha z tan a)^2, where a is the angle of w to z.
 inline double facet_slope2(const Vec3& w, const Facets& f) {
   const double x = f.alpha_u * w.x;
   const double y = f.alpha_v * w.y;
   return x * x + y * y;
 }
 
-/// Returns ggx_stretched() for two alphas.
+/// Returns the length of w with x multiplied by alpha_u and y by alpha_v, as ggx_stretched() does
+/// with one alpha.
 inline double facet_stretched(const Vec3& w, const Facets& f) {
   return f.isotropic() ? ggx_stretched(w, f.alpha_u) : std::sqrt(facet_slope2(w, f) + w.z * w.z);
 }

@@ -24,8 +24,8 @@ inline double amount_at(const Mix& mix, absl::Span<const Texture> textures,
 }
 
 /// Returns the material that is present at a point of a surface of material `id`. The result is
-/// never a mixture. If material `id` is a mixture, u in [0, 1) selects one of its parts, and a part
-/// of that part if it is a mixture again.
+/// never a mixture. If material `id` is a mixture, u in [0, 1) selects one of its parts. If this
+/// part is a mixture too, u also selects a part of it, and so on.
 inline MaterialId part_at(absl::Span<const Material> materials, absl::Span<const Texture> textures,
                           MaterialId id, const SurfacePoint& point, double u) {
   // The parts of a mixture precede it, so there are fewer steps than materials.

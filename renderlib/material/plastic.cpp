@@ -66,8 +66,8 @@ PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textur
       with_internal(reflectance, bsdf.coat.internal_reflectance(), material.nonlinear, bsdf.eta);
   bsdf.passing = bsdf.coat.passing(std::min(1.0, dot(wo, bsdf.normal.shading)));
   const double coat = (1 - bsdf.passing) * max_component(bsdf.specular);
-  // This is the mean transmittance of the coat over all outgoing directions. It follows from the
-  // reciprocity of the coat.
+  // `out` is the mean transmittance of the coat over all outgoing directions. The formula follows
+  // from the reciprocity of the coat.
   const double out = (1 - bsdf.coat.internal_reflectance()) * bsdf.eta * bsdf.eta;
   const double below = bsdf.passing * out * max_component(bsdf.diffuse);
   bsdf.specular_chance = coat + below > 0 ? coat / (coat + below) : 0;

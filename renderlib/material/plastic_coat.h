@@ -10,11 +10,12 @@
 
 namespace bandsaw {
 
-/// Tables of the coat's transmittance from the outside, by the cosine, and of its reflectance from
-/// the inside. They are for the alpha of Plastic::surface. If alpha has a map, they are for all
-/// alphas up to that value. Scattering is single: light that meets another facet is lost, as in the
-/// coat's reflection. The transmittance of a rough coat is interpolated linearly between 64
-/// cosines, as in Mitsuba 3's roughplastic. The transmittance of a smooth coat is exact.
+/// Two tables: the transmittance of the coat for light from outside, which depends on the cosine,
+/// and the mean reflectance of the coat for light from inside. The tables are for the alpha of
+/// Plastic::surface. If alpha has a map, they are for all alphas up to this value. Scattering is
+/// single: light that meets another facet is lost, as in the coat's reflection. The transmittance
+/// of a rough coat is interpolated linearly between 64 cosines, as in Mitsuba 3's roughplastic. The
+/// transmittance of a smooth coat is exact.
 class PlasticCoat {
  public:
   PlasticCoat(const Microfacets& surface, double index_of_refraction);
@@ -52,7 +53,8 @@ class PlasticCoat {
   std::vector<Row> rows_;
 };
 
-/// Sets Plastic::coat of all materials of this kind. Materials with equal coats share one object.
+/// Sets Plastic::coat of all materials of the kind Plastic. Materials with equal coats share one
+/// object.
 void prepare_materials(absl::Span<Material> materials);
 
 }  // namespace bandsaw

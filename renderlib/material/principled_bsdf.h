@@ -25,7 +25,7 @@ struct PrincipledBsdf {
   /// coordinate u (facet_frame() in shading_normal.h).
   Basis frame;
   Vec3 o;  ///< wo in the frame
-  /// wo is inside the body: only specular reflection and refraction are present.
+  /// True if wo is inside the body. Then only specular reflection and refraction are present.
   bool inside = false;
   double eta = 1.5;  ///< index beyond the surface over index on this side
   Facets facets;

@@ -1,6 +1,6 @@
-// Glass with microfacets: a facet visible from wo is sampled, and then reflection or refraction at
-// it is chosen by the Fresnel term. In the frame, o is wo, i is wi, and h is the normal of the
-// facet.
+// Glass with microfacets: a facet visible from wo is sampled. Then the Fresnel term decides whether
+// the facet reflects or refracts the direction. In the frame, o is wo, i is wi, and h is the normal
+// of the facet.
 
 #include "renderlib/material/rough_dielectric.h"
 

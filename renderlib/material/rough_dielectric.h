@@ -22,8 +22,8 @@ struct RoughDielectricBsdf {
 };
 
 /// sample() and evaluate() are those of material/bsdf.h for this kind. u and v select the
-/// microfacet, `lobe` reflection or refraction. Returns std::nullopt if the light is lost between
-/// microfacets.
+/// microfacet, and `lobe` selects reflection or refraction. Returns std::nullopt if the light is
+/// lost between microfacets.
 std::optional<BsdfSample> sample(const RoughDielectricBsdf& bsdf, double u, double v, double lobe);
 BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi);
 

@@ -13,10 +13,11 @@
 
 namespace bandsaw {
 
-/// Returns the unit shading normal on the outside, bent by `texel` of a normal map (0.5 + 0.5 n in
-/// the frame of the map's uvs and the shading normal; glTF 2.0, 3.9.3). `scale` multiplies the
-/// tangential part of n. `placed` is the map's transform of the uvs, and `set` the set of uvs that
-/// it uses. If the uvs define no frame, any frame around the normal is used.
+/// Returns the unit shading normal on the outside, bent by `texel` of a normal map. The texel is
+/// 0.5 + 0.5 n, where n is a direction in the frame of the map's uvs and the shading normal (glTF
+/// 2.0, 3.9.3). `scale` multiplies the tangential part of n. `placed` is the map's transform of the
+/// uvs, and `set` the set of uvs that it uses. If the uvs define no frame, any frame around the
+/// normal is used.
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 

@@ -26,7 +26,7 @@ double chance_of(const Rgb& first, const Rgb& second) {
 ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
                                    const Vec3& wo) {
   const double face = fresnel(std::min(1.0, dot(wo, normal.shading)), pane.index_of_refraction);
-  // The light that both faces reflect, with all reflections between them (thin.h).
+  // The share of light that the pane reflects, with all reflections between its two faces (thin.h).
   const double both = 2 * face / (1 + face);
   ThinDielectricBsdf bsdf{normal, wo, pane.specular * static_cast<float>(both),
                           pane.transmission * static_cast<float>(1 - both)};

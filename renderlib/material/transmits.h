@@ -1,14 +1,15 @@
 #pragma once
 
-// Tells which materials light can pass. Such materials cannot be one-sided (Material::one_sided).
+// Tells whether light can pass through a material. A material through which light can pass cannot
+// be one-sided (Material::one_sided).
 
 #include "renderlib/base/overloaded.h"
 #include "renderlib/material/material.h"
 
 namespace bandsaw {
 
-/// Returns true if light can pass the surface from one side to the other. The material MUST NOT be
-/// a mixture.
+/// Returns true if light can pass through the surface from one side to the other. The material MUST
+/// NOT be a mixture.
 inline bool transmits(const Material& material) {
   return std::visit(
       Overloaded{

@@ -1,9 +1,10 @@
 #pragma once
 
-// Elementary functions with the same bits on every CPU and C library: built only from + - * / sqrt
-// and fma. (glibc selects a variant of its double functions by CPU, and the variants differ in the
-// last bits.) Except for pow(), their error is at most 2 units in the last place over the stated
-// domain. renderlib never calls the <cmath> functions of the same names.
+// Elementary functions whose results have the same bits on every CPU and with every C library. They
+// are built only from + - * / sqrt and fma. (glibc selects a variant of its double functions by
+// CPU, and the variants differ in the last bits.) Except for pow(), their error is at most 2 units
+// in the last place over the stated domain. renderlib never calls the <cmath> functions of the same
+// names.
 
 namespace bandsaw {
 

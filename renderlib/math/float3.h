@@ -1,6 +1,7 @@
 #pragma once
 
-// Vectors in single precision, as meshes and guiding fields store them, and their conversions.
+// Vectors of three floats, as meshes and guiding fields store them, and conversions from and to
+// Vec3, which has three doubles.
 
 #include <array>
 

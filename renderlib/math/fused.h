@@ -1,7 +1,8 @@
 #pragma once
 
-// Fused multiplication and addition: std::fma where processors have the instruction. WebAssembly
-// has none, so there the functions are emulated, with the same bits.
+// Fused multiplication and addition, which is a b + c with one rounding: std::fma where processors
+// have the instruction. WebAssembly has none, so there the functions are emulated, with the same
+// bits.
 
 #include <bit>
 #include <cmath>
@@ -52,8 +53,8 @@ inline double error_of_product(double a, double b, double product) {
   return ((p.hi * q.hi - product) + p.hi * q.lo + p.lo * q.hi) + p.lo * q.lo;
 }
 
-/// Handles the rare cases of fma(). Takes the parameters of fma() and the numbers that it has
-/// computed.
+/// Handles the rare cases of fma(). Takes the parameters of fma() and numbers that fma() has
+/// computed from them.
 [[gnu::noinline]] inline double careful_fma(double a, double b, double c, double product,
                                             double error, double sum) {
   if (a == 0 || b == 0) {

@@ -7,8 +7,8 @@
 
 // atan(y / x) = atan(t) + atan((y - t x) / (x + t y)), where t is the multiple of 1/8 that is
 // nearest to y / x. t has so few bits that the numerator is rounded only once. asin(x) is the angle
-// of the point (sqrt(1 - x^2), x), and acos(x) is the angle of (x, sqrt(1 - x^2)). There, 1 - x^2
-// is rounded once as well.
+// of the point (sqrt(1 - x^2), x), and acos(x) is the angle of (x, sqrt(1 - x^2)). In both
+// functions, 1 - x^2 is rounded once as well.
 
 namespace bandsaw {
 namespace {

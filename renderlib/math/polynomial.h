@@ -20,7 +20,7 @@ inline double polynomial(double x, const double (&c)[N]) {
   }
 }
 
-/// Returns a b exactly.
+/// Returns a b exactly, as the sum of two doubles.
 inline TwoDoubles two_product(double a, double b) {
   const double product = a * b;
   return {product, product_error(a, b, product)};

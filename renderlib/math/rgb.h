@@ -28,8 +28,8 @@ constexpr bool is_black(const Rgb& a) { return a.r == 0 && a.g == 0 && a.b == 0;
 /// Returns the Rec. 709 luminance.
 constexpr float luminance(const Rgb& a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
 /// Returns the Rec. 709 luminance, without rounding errors for greys: if r, g and b are equal, the
-/// result is exactly this number. So it can be compared with a limit, while luminance() may return
-/// a slightly smaller number.
+/// result is exactly r. So the result can be compared with a limit, while luminance() may return a
+/// slightly smaller number.
 constexpr float luminance_exact_for_grays(const Rgb& a) {
   return a.g + 0.2126f * (a.r - a.g) + 0.0722f * (a.b - a.g);
 }

@@ -1,5 +1,5 @@
-// The inverse is the transposed cofactor matrix over the determinant, after a scaling by a power of
-// two.
+// Implements affine maps. The inverse is the transposed cofactor matrix over the determinant, after
+// a scaling by a power of two.
 
 #include "renderlib/math/transform.h"
 

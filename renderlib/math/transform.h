@@ -22,7 +22,7 @@ struct Transform {
 Transform operator*(const Transform& a, const Transform& b);
 
 Transform translation(const Vec3& by);
-/// Scales each axis by its component of `by`.
+/// Returns the map that scales x, y and z by the components of `by`.
 Transform scaling(const Vec3& by);
 /// Returns the rotation by an angle in degrees about `axis` (not zero), counter-clockwise if the
 /// axis points to the viewer.
