@@ -36,7 +36,8 @@ double transmittance(double sigma, double length) {
 
 double reach(double sigma, double length) {
   const double depth = optical_length(sigma, length);
-  // For smaller depths, -expm1(-depth) / sigma equals the length to the last bit or underflows.
+  // For depths below kShort, -expm1(-depth) / sigma equals the length to the last bit or
+  // underflows.
   constexpr double kShort = 1e-17;
   if (depth < kShort) {
     return length;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes a VolumeGrid (a grid of numbers, stored in bricks of 8 x 8 x 8 cells) of dense or sparse
+// Makes a VolumeGrid (a grid of numbers, stored in bricks of 8 x 8 x 8 cells) from dense or sparse
 // numbers. Importers of volumes use it.
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace bandsaw {
 
-/// Collects bricks: bricks of zeros are left out and equal ones are stored once. The numbers are
+/// Collects bricks. Bricks of zeros are left out, and equal bricks are stored once. The numbers are
 /// stored as 16-bit floats (halves) if each of them is exactly a half, otherwise as floats.
 class BrickBuilder {
  public:

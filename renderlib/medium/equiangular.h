@@ -12,10 +12,11 @@ namespace bandsaw {
 class Equiangular {
  public:
   Equiangular() = default;
-  /// Samples [0, length] (> 0, may be infinite) along the unit direction `direction` from `origin`,
-  /// for the finite point `pivot`. If the pivot is very near the ray, its distance from the ray is
-  /// raised to a minimum, so that the pdf is finite. The minimum is a millionth of the larger of
-  /// two lengths: `length`, if finite, and the pivot's distance from `origin` along the ray.
+  /// Samples distances in [0, length] from `origin` along the unit vector `direction`, for the
+  /// finite point `pivot`. `length` is > 0 and may be infinite. If the pivot is very near the ray,
+  /// its distance from the ray is raised to a minimum, so that the pdf is finite. The minimum is a
+  /// millionth of the larger of two lengths: `length`, if finite, and the pivot's distance from
+  /// `origin` along the ray.
   Equiangular(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot);
 
   /// Returns a finite distance in [0, length]; u in [0, 1).

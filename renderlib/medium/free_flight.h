@@ -4,13 +4,14 @@
 // scattered in the segment, and at which distance. tracking.h does the same in media that vary in
 // space.
 //
-// Light has three channels with three extinction coefficients. A distance is drawn for one channel
-// and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,
-// Nawaz, Droske, Weidlich and Hanika 2014, "Hero Wavelength Spectral Sampling", section 3.1). The
-// probability of a channel is proportional to the amount of its light that is scattered in the
-// segment. The probability of scattering, instead of passing, is the scattered share of all light.
-// Absorption is contained in the weights and ends no path. So the sum of the channels is the same
-// for every outcome and never larger than before, and no channel grows by more than a factor of 3.
+// Light has three channels with three extinction coefficients. A distance is drawn for one channel.
+// Its pdf is the mean of the pdfs of all channels, weighted by the probabilities of the channels
+// (balance heuristic over wavelengths: Wilkie, Nawaz, Droske, Weidlich and Hanika 2014, "Hero
+// Wavelength Spectral Sampling", section 3.1). The probability of a channel is proportional to the
+// amount of its light that is scattered in the segment. The probability of scattering, instead of
+// passing, is the scattered share of all light. Absorption is contained in the weights and ends no
+// path. So the sum of the channels is the same for every outcome and never larger than before, and
+// no channel grows by more than a factor of 3.
 
 #include <array>
 

@@ -16,6 +16,7 @@ constexpr ValueBounds kZero{0, 0};
 /// Bounds of no value at all.
 constexpr ValueBounds kNothing{std::numeric_limits<float>::max(), 0};
 
+/// Returns bounds that contain the values of a and of b.
 ValueBounds both(const ValueBounds& a, const ValueBounds& b) {
   return {std::min(a.least, b.least), std::max(a.most, b.most)};
 }
@@ -32,7 +33,7 @@ constexpr std::size_t part_number(std::uint32_t x, std::uint32_t y, std::uint32_
 using PartBounds = std::array<ValueBounds, kParts>;
 
 /// Returns the bounds of a stored brick for each combination of parts. `inside` is the number of
-/// its cells along each axis that are in the box.
+/// cells of the brick, along each axis, that are in the grid's box.
 PartBounds bounds_of_parts(const GridReader& reader, std::uint32_t brick,
                            const std::array<std::uint32_t, 3>& inside) {
   PartBounds parts;

@@ -1,5 +1,5 @@
-// The constructor divides the space around the grids into cubes and bounds the density in each.
-// Coefficients at a point come from look-ups in the grids.
+// The constructor divides the box that contains the grids into cubes, and bounds the density in
+// each cube. Coefficients at a point come from look-ups in the grids.
 
 #include "renderlib/medium/grid_medium.h"
 

@@ -45,7 +45,7 @@ struct Coefficients {
   std::array<double, 3> scattering{};
 };
 
-/// Points are given in the medium's space (scene/media.h).
+/// A medium and readers of its grids. Points are given in the medium's space (scene/media.h).
 class GridMedium {
  public:
   /// `medium` refers to entries of `grids`. The medium and the grids MUST be valid, and the grids
@@ -57,11 +57,12 @@ class GridMedium {
   double g() const { return g_; }
   /// Returns the extinction coefficients where the density is 1.
   const std::array<double, 3>& extinction() const { return extinction_; }
+  /// Returns the largest channel of extinction().
   double max_extinction() const { return max_extinction_; }
   bool scatters() const { return scatters_; }
   bool emits() const { return emits_; }
 
-  /// Returns the density at a point, by channel, or `most` where it is larger.
+  /// Returns the density at a point, by channel; `most` where the density is larger than `most`.
   std::array<double, 3> density(const Vec3& at, double most) const;
   /// Returns the coefficients at a point with this density.
   Coefficients coefficients(const Vec3& at, const std::array<double, 3>& density) const;
@@ -79,8 +80,10 @@ class GridMedium {
   };
   using Channels = std::array<double, 3>;
 
+  /// Returns the look-up of the grid that `use` names; std::nullopt if `use` names none.
   static std::optional<Lookup> lookup(const std::optional<GridUse>& use,
                                       const std::vector<VolumeGrid>& grids);
+  /// Computes `regions_`.
   void find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids);
 
   Channels extinction_{};

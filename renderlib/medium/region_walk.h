@@ -32,7 +32,8 @@ struct RegionSpan {
   Region region;
 };
 
-/// Iterates over the part of a ray from 0 to `length`: its spans follow each other without a gap.
+/// Iterates over the spans of a ray from distance 0 to `length`. The spans follow each other
+/// without a gap.
 class RegionWalk {
  public:
   /// `regions` MUST outlive this object. `length` >= 0, may be infinite.

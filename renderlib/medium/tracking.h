@@ -15,9 +15,9 @@
 //   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2). The control
 //   variate is the least density of each region. So in regions of constant density the estimate is
 //   exact.
-// - Emission is collected at tentative collisions. Inside the block, a region is a cube. Where the
-//   medium emits in a region, a part of the ray as long as the side of a cube has on average at
-//   least two tentative collisions.
+// - Emission is collected at tentative collisions. The regions are equal cubes, and the space
+//   around all cubes. In a region where the medium emits, a part of the ray as long as the side of
+//   a cube has on average at least two tentative collisions.
 //
 // Flights whose weight is low end by Russian roulette, and so do flights of very many collisions.
 

@@ -73,7 +73,8 @@ absl::StatusOr<float> check_values(const VolumeGrid& grid) {
   const std::size_t count = grid.values.size() / (half ? 2 : 4);
   std::uint32_t most = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // Without a sign, bits are ordered as the numbers are; infinities and NaNs are above them.
+    // If the sign bit is 0, the bits are ordered as the numbers are. Infinities, NaNs and numbers
+    // with the sign bit have larger bits than all finite numbers without it.
     const std::uint32_t bits = half ? load<std::uint16_t>(grid.values.data(), i)
                                     : load<std::uint32_t>(grid.values.data(), i);
     if (bits >= (half ? 0x7c00u : 0x7f800000u)) {

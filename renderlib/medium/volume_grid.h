@@ -74,10 +74,10 @@ constexpr std::uint64_t brick_bytes(std::uint32_t channels, VolumeGrid::Format f
 /// not 0. The message begins with the field: ".index: …".
 absl::StatusOr<float> check_grid(const VolumeGrid& grid);
 
-/// Returns the number that a half (IEEE 754, 16 bits) has; exact.
+/// Returns the number that a half (IEEE 754, 16 bits) has. The result is exact.
 float half_to_float(std::uint16_t half);
-/// Returns the half with this number. If there is none, sets `*exact` to false, and the result has
-/// another number. Otherwise `*exact` does not change.
+/// Returns the half with the number `value`. If no half has this number, returns a half with
+/// another number and sets `*exact` to false. Otherwise `*exact` does not change.
 std::uint16_t float_to_half(float value, bool* exact);
 
 /// Reads the numbers of a grid, which MUST be valid and outlive this object.

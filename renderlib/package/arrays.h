@@ -15,6 +15,7 @@ namespace bandsaw {
 
 static_assert(std::endian::native == std::endian::little, "blobs are copied, not converted");
 
+/// Returns the bytes of an array.
 template <class T>
 std::vector<std::byte> to_bytes(const std::vector<T>& values) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -25,7 +26,7 @@ std::vector<std::byte> to_bytes(const std::vector<T>& values) {
   return bytes;
 }
 
-/// `bytes.size()` MUST be a multiple of sizeof(T).
+/// Returns the array whose bytes are `bytes`. `bytes.size()` MUST be a multiple of sizeof(T).
 template <class T>
 std::vector<T> from_bytes(absl::Span<const std::byte> bytes) {
   static_assert(std::is_trivially_copyable_v<T>);

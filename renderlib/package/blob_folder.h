@@ -21,11 +21,14 @@ absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const st
 /// Errors are those of MappedFile.
 absl::StatusOr<std::unique_ptr<BlobBytes>> map_blob(const File& file);
 
-/// Each call of get() hashes the file and maps it; nothing is cached. Thread-safe.
+/// The blobs of a folder. Each call of get() hashes the file and maps it; nothing is cached.
+/// Thread-safe.
 class BlobFolder : public BlobSource {
  public:
   explicit BlobFolder(std::string folder) : folder_(std::move(folder)) {}
-  /// Returns NOT_FOUND or DATA_LOSS as in BlobSource, or the system's error, with the file's name.
+  /// Returns NOT_FOUND if the folder has no such file, and DATA_LOSS if the file is not a regular
+  /// file, if it cannot be read, or if its bytes do not have the digest. Other errors are those of
+  /// the system. All messages name the file.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
   std::string path_of(const wire::Digest& digest) const { return folder_ + "/" + digest.hex(); }
 

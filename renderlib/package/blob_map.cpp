@@ -1,4 +1,5 @@
-// Implements BlobMap, which keeps blobs in memory by their digests.
+// Implements BlobMap, which keeps blobs (flat arrays of scene packages) in memory, by their
+// digests.
 
 #include "renderlib/package/blob_source.h"
 

@@ -1,6 +1,6 @@
-// Decoder fetches the blobs that the manifest names, checks their sizes, and makes shapes, meshes
-// and textures of them. If an earlier package has an equal part that is still in use, the part is
-// taken from DecodedParts.
+// Decoder fetches the blobs (flat arrays) that the manifest of a scene package names, checks their
+// sizes, and makes shapes, meshes and textures of them. If an earlier package has an equal part
+// that is still in use, the part is taken from DecodedParts.
 
 #include "renderlib/package/package.h"
 
@@ -367,6 +367,7 @@ class Decoder {
   std::set<const Mesh*> shared_;  ///< meshes of other packages
 };
 
+/// Returns the shapes, meshes, groups and instances of the manifest.
 absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Decoder& decoder) {
   Geometry geometry;
   RETURN_IF_ERROR(decoder.shapes(manifest, "", geometry));
@@ -382,6 +383,8 @@ absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Deco
   return geometry;
 }
 
+/// Returns the media of the manifest, with the bytes of their grids and with the shapes that bound
+/// the media.
 absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, Decoder& decoder) {
   ASSIGN_OR_RETURN(Media media, decode_media(manifest));
   for (int i = 0; i < manifest.grid_size(); ++i) {

@@ -1,5 +1,6 @@
-// Decodes camera, filter, local shading (ambient light and the distance of ambient occlusion) and
-// background. Only the form is checked here; validate() checks the values.
+// Decodes these parts of a scene package: camera, filter, local shading (ambient light and the
+// distance of ambient occlusion) and background. Only the form is checked here; validate() checks
+// the values.
 
 #include "renderlib/package/decode_surface.h"
 
@@ -47,7 +48,7 @@ absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::str
     }
     window = {from.window(0), from.window(1), from.window(2), from.window(3)};
   }
-  // The height of a perspective camera is 0.
+  // The orthographic height of a perspective camera is 0.
   if (from.orthographic_height() != 0) {
     return Camera(OrthographicCamera{view.position, view.look_at, view.up,
                                      from.orthographic_height(), from.mirrored(), shutter, window});

@@ -1,8 +1,9 @@
 #pragma once
 
-// Decodes some parts of a manifest (proto/package.proto): camera, filter, local shading (ambient
-// light and the distance of ambient occlusion), background, and lists of three numbers. Checks only
-// the form, not the values (scene/validate.h).
+// Decodes some parts of a manifest, the message that describes a scene package
+// (proto/package.proto): camera, filter, local shading (ambient light and the distance of ambient
+// occlusion), background, and lists of three numbers. Checks only the form, not the values
+// (scene/validate.h).
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"

@@ -1,8 +1,9 @@
 #pragma once
 
-// Remembers the large parts (meshes and blobs) of decoded packages as long as a scene uses them. If
-// a package that is decoded later has equal parts, it shares them. So for each frame of an
-// animation only the parts that change are read. decode_package() (package.h) uses this class.
+// Remembers the large parts of decoded scene packages as long as a scene uses the parts: meshes,
+// and blobs (flat arrays). If a package that is decoded later has an equal part, it shares the
+// remembered part. So for each frame of an animation only the parts that change are read.
+// decode_package() (package.h) uses this class.
 
 #include <cstddef>
 #include <map>
