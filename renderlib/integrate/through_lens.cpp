@@ -22,7 +22,8 @@ void sample_light_through_lens(const PathContext& context, const LensView& lens,
   if (!lights.any_for(focus)) {
     return;
   }
-  // With this vertex, a light that the camera ray hits gets its MIS weight against light sampling.
+  // Because of this vertex, a light that the camera ray hits is weighted by MIS against light
+  // sampling.
   path.previous = {.receiver = focus, .pdf = lens.pdf(path.ray.direction), .delta = false};
   // Number 0 of this group is the time of the ray.
   const Sample4 numbers = context.numbers(kGroupTime);

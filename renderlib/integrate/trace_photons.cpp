@@ -142,11 +142,10 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
   }
 }
 
-/// Returns true if there is a surface close to the point `to` of the photon's disk, and nothing
-/// opaque stands between it and the photon. Close means at most a quarter of the radius below the
-/// disk's plane: lower surfaces do not get the photon's light (density_at() in
-/// guiding/photon_map.h).
-/// `centre`: the centre of the disk in the world.
+/// Returns true if a surface lies close to the point `to` of the photon's disk, and nothing opaque
+/// stands between this point and the centre of the disk. Close means at most a quarter of the
+/// radius below the disk's plane: lower surfaces do not get the photon's light (density_at() in
+/// guiding/photon_map.h). `centre`: the centre of the disk in the world.
 bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& centre,
                    const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);

@@ -36,9 +36,9 @@ struct TracedPhotons {
 };
 
 /// Traces the photons. A photon starts at a random point of a caster, with the light of a lamp that
-/// is sampled from this point. Its path is a pure function of the scene, the seed, the number of
-/// the map and the number of the photon; its power is divided by PhotonChunk::photons. `casters`
-/// MUST be complete (Casters::complete).
+/// is sampled from this point. The path of a photon is a pure function of the scene, the seed, the
+/// number of the map and the number of the photon. The power of the photon is divided by
+/// PhotonChunk::photons. `casters` MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
 /// Returns the photon as a map holds it. It arrived with the power `power` at the receiver `hit`,

@@ -1,6 +1,6 @@
 // Traces paths from the camera and remembers their vertices. When a path has ended, each vertex
-// whose direction can be guided becomes a record: the direction of the path from there, and the
-// light that it found in that direction.
+// whose direction can be guided becomes a record: the direction in which the path continued, and
+// the light that the path found in this direction.
 
 #include "renderlib/integrate/training_paths.h"
 

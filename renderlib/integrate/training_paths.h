@@ -53,7 +53,7 @@ bool append_chunks(std::uint32_t first, std::uint32_t last, const Preparation& p
 
 /// Traces the paths of a chunk through random places of the image. Of each path, returns records
 /// for the first eight vertices at which the direction can be guided. A record holds the light that
-/// the path found after its vertex; light sampling at the vertex itself is excluded.
+/// the path found after the vertex; light sampling at the vertex itself is excluded.
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
                                const TrainingChunk& chunk, const PathOptions& options);
 

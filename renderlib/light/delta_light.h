@@ -58,7 +58,7 @@ struct SpotLight {
   Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the direction in which the light travels
   Rgb intensity{1, 1, 1};    ///< radiant intensity on the axis; >= 0, finite
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
-  double cos_outer = 0.70710678118654752440;  ///< by default that of 45 degrees, as in glTF
+  double cos_outer = 0.70710678118654752440;  ///< by default the cosine of 45 degrees, as in glTF
   Falloff falloff = Falloff::kSquare;
   /// An image that multiplies the intensity. Beyond the edges of its rectangle the texture is
   /// repeated or clamped, as its wrap mode says.

@@ -1,5 +1,5 @@
 // Bounds of shapes and delta lights, and their importance: intensity, times the largest cosines at
-// both ends, over the squared distance.
+// the light and at the receiver, over the squared distance.
 
 #include "renderlib/light/light_bound.h"
 

@@ -32,7 +32,8 @@ struct LightBound {
   bool flat = false;       ///< all emitters lie in one plane perpendicular to the axis
 };
 
-/// Returns the bound of a shape. `radiance` is the mean of its radiance over surface and channels.
+/// Returns the bound of a shape. `radiance` is the radiance of the shape, a mean over its surface
+/// and the channels.
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided);
 LightBound bound_of(const PointLight& light);
 /// `textures` are those of the scene.

@@ -120,6 +120,7 @@ Group group_of(const LightBound& light) {
   return group;
 }
 
+/// A split of the lights between two bins of an axis.
 struct Split {
   int axis = -1;
   std::size_t bin = 0;  ///< last bin of the first half

@@ -1,6 +1,6 @@
 // The constructor numbers all lights and computes their bounds. sample() chooses a light
-// (light_choice.h), then a point on it by its kind. pdf() returns the pdf of this choice for a
-// point that a ray has hit.
+// (light_choice.h), then a point on the light, in a way that depends on the kind of light. pdf()
+// returns the pdf of this choice for a point that a ray has hit.
 
 #include "renderlib/light/lights.h"
 
@@ -92,7 +92,7 @@ std::vector<LightBound> Lights::add_surfaces() {
 }
 
 // The result for a group is kept in `known`. Examining a group again for each of its instances
-// would take too long, because it may have many instances and many primitives.
+// would take too long, because a group may have many instances and many primitives.
 bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                          std::map<GroupId, bool>& known) const {
   const Instance& placed = geometry_->instances[instance - 1];

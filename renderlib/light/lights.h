@@ -104,6 +104,7 @@ class Lights {
   /// Returns the number of the primitive among the lights; kNoLight if it is not a light.
   std::uint32_t index_of_light(PrimitiveId id) const;
 
+  // The pdfs of these samples do not include the selection of the light.
   std::optional<LightSample> sample_surface(PrimitiveId id, const Receiver& receiver, double u,
                                             double v) const;
   std::optional<LightSample> sample_delta(const DeltaLight& light, const Receiver& receiver) const;

@@ -17,8 +17,8 @@ namespace {
 
 using Kind = ShapeView::Kind;
 
-/// Returns the rectangle for sampling by its solid angle from `from`; std::nullopt if the shape is
-/// no rectangle or can only be sampled by area.
+/// Returns the rectangle as seen from `from`, for sampling by solid angle; std::nullopt if the
+/// shape is no rectangle or can only be sampled by area.
 std::optional<SphericalRectangle> seen_rectangle(const ShapeView& shape, const Vec3& from) {
   if (shape.kind != Kind::kQuad || !is_rectangle(shape.u, shape.v)) {
     return std::nullopt;
@@ -26,8 +26,8 @@ std::optional<SphericalRectangle> seen_rectangle(const ShapeView& shape, const V
   return SphericalRectangle::seen_from(from, shape.a, shape.u, shape.v);
 }
 
-/// Returns the triangle for sampling by its solid angle from `from`; std::nullopt if the shape is
-/// no triangle or can only be sampled by area.
+/// Returns the triangle as seen from `from`, for sampling by solid angle; std::nullopt if the shape
+/// is no triangle or can only be sampled by area.
 std::optional<SphericalTriangle> seen_triangle(const ShapeView& shape, const Vec3& from) {
   return shape.kind == Kind::kTriangle
              ? SphericalTriangle::seen_from(from, shape.a, shape.u, shape.v)

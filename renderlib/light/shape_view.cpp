@@ -24,6 +24,7 @@ ShapeView triangle_view(const Vec3& a, const Vec3& b, const Vec3& c, bool mirror
   return {.kind = Kind::kTriangle, .a = a, .u = b - a, .v = c - a, .mirrored = mirrored};
 }
 
+/// Returns triangle `primitive` of the instance's mesh at `time`, transformed by `to_world`.
 ShapeView mesh_view(const Geometry& geometry, const Instance& instance, std::uint32_t primitive,
                     const Transform& to_world, double time) {
   const auto at =
@@ -65,6 +66,7 @@ bool is_round(const ShapeView& shape) {
          std::abs(dot(shape.w, shape.u)) <= slack;
 }
 
+/// Returns the shape transformed by `to_world`.
 ShapeView placed(const ShapeView& shape, const Transform& to_world) {
   ShapeView result = shape;
   result.a = to_world.point(shape.a);

@@ -1,5 +1,5 @@
-// Returns for each kind of material its colour as a denoiser or a user expects to see it. This is
-// not the exact share of reflected light.
+// Returns for each kind of material the colour that a denoiser or a user expects. The colour is not
+// the exact share of reflected light.
 
 #include "renderlib/material/albedo.h"
 

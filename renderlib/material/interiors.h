@@ -1,8 +1,8 @@
 #pragma once
 
 // Nested dielectrics: the glasses that contain a path (Schmidt and Budge 2002, "Simple Nested
-// Dielectrics in Ray Traced Images", JGT 7(2)). Where several overlap, only the one of highest
-// priority is present. Only materials with a priority take part.
+// Dielectrics in Ray Traced Images", JGT 7(2)). Where several glasses overlap, only the one of
+// highest priority is present. Only materials with a priority take part.
 
 #include <algorithm>
 #include <array>
@@ -83,7 +83,8 @@ class Interiors {
     double index;
   };
 
-  /// Returns the glass of highest priority except material `id`; null if there is none.
+  /// Returns the glass of highest priority among those whose material is not `id`; null if there is
+  /// none.
   const Entry* highest_except(MaterialId id) const {
     const Entry* top = nullptr;
     for (std::size_t i = 0; i < size_; ++i) {

@@ -75,7 +75,7 @@ void add_coat(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValu
 
 void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
   // The half vector of a refraction (Walter et al. 2007, eq. 16). The division below by
-  // copysign(size, h.z) turns it to the side of the normal.
+  // copysign(size, h.z) turns the half vector to the side of the normal.
   Vec3 h = -(bsdf.o + i * bsdf.eta);
   const double size = length(h);
   if (!(size > 0)) {

@@ -106,9 +106,9 @@ GridMedium::GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grid
 }
 
 void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids) {
-  // The first grid for which bounded() is called determines the regions, which are its bricks or
-  // cubes of several of its bricks. bounded() is not called for the albedo grid, which does not
-  // affect the bounds.
+  // The first grid for which bounded() is called determines the regions: they are the bricks of
+  // this grid, or cubes of several bricks. bounded() is not called for the albedo grid, which does
+  // not affect the bounds.
   const VolumeGrid* primary = nullptr;
   Box block;
   const auto bounded = [&](const std::optional<GridUse>& use) -> std::optional<Bounded> {

@@ -48,6 +48,8 @@ absl::StatusOr<Vec3> vec3(const google::protobuf::RepeatedField<double>& list,
   return Vec3{list[0], list[1], list[2]};
 }
 
+// image(), checker(), noise() and ramp() decode one kind of texture each.
+
 absl::StatusOr<ImageTexture> image(const package::ImageTexture& from, const std::string& field) {
   using Proto = package::ImageTexture;
   using Ours = ImageTexture;
@@ -348,6 +350,8 @@ class Decoder {
   }
 
  private:
+  // Returns the blob with this digest, and remembers it in `parts_`. If `parts_` has the blob from
+  // an earlier package, it is not fetched again.
   absl::StatusOr<std::shared_ptr<const BlobBytes>> blob_of(const wire::Digest& digest) {
     if (parts_ != nullptr) {
       if (std::shared_ptr<const BlobBytes> known = parts_->blob(digest)) {

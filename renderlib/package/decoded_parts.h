@@ -25,6 +25,7 @@ class DecodedParts {
   /// Returns the blob with this digest; nullptr: it is not in use.
   std::shared_ptr<const BlobBytes> blob(const wire::Digest& digest) const;
 
+  /// These functions remember a part as long as somebody uses it.
   void add(const std::string& message, const std::shared_ptr<const Mesh>& mesh);
   void add(const wire::Digest& digest, const std::shared_ptr<const BlobBytes>& blob);
   /// Forgets parts that nobody uses any more.
