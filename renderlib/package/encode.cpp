@@ -33,8 +33,8 @@ Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
 }
 
-/// Sets `ref` to the size and digest of the bytes. Adds the bytes to `blobs`, unless `parts` knows
-/// them from the last package. `parts` may be nullptr.
+/// Sets `ref` to the size and digest of the bytes, and adds the bytes to `blobs`. `parts` remembers
+/// the last package (encoded_parts.h). Bytes that were in it are not added. `parts` may be nullptr.
 void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, package::Blob& ref) {
   ref.set_size(bytes.size());
   if (const wire::Digest* known = parts != nullptr ? parts->digest_of(bytes) : nullptr) {
@@ -48,6 +48,7 @@ void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, p
   }
 }
 
+/// Encodes a texture into `to`; called by std::visit.
 struct EncodeTexture {
   BlobMap& blobs;
   EncodedParts* parts;
@@ -139,6 +140,7 @@ class Encoder {
  public:
   Encoder(BlobMap& blobs, EncodedParts* parts) : blobs_(blobs), parts_(parts) {}
 
+  // Adds the bytes as a blob, and sets `ref` to their size and digest.
   void put(SharedBytes bytes, package::Blob& ref) {
     ref.set_size(bytes.size());
     ref.set_sha256(blobs_.put(std::move(bytes)).raw());
@@ -148,8 +150,8 @@ class Encoder {
     bandsaw::put_shared(bytes, blobs_, parts_, ref);
   }
 
-  // Adds a blob with one entry for each shape. `of(shape)`, or the member `of` of the shape, is the
-  // entry, and `Value` is its type.
+  // Adds a blob with one entry of type `Value` for each shape. The entry is `of(shape)`, or the
+  // member of the shape to which `of` points.
   template <class Value, class Shape, class Of>
   void put_each(const std::vector<Shape>& shapes, package::Blob& ref, Of of) {
     std::vector<Value> values(shapes.size());

@@ -1,4 +1,4 @@
-// For each kind of light, one function that encodes it and one that decodes it.
+// Converts each kind of light, and environments, to and from messages of proto/package.proto.
 
 #include "renderlib/package/lights.h"
 
@@ -26,6 +26,7 @@ void encode(const ProjectedImage& from, package::ProjectedImage& to) {
   to.set_half_height(from.half_height);
 }
 
+/// Encodes a light into `to`; called by std::visit.
 struct EncodeLight {
   package::Light& to;
 

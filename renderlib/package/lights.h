@@ -15,8 +15,8 @@ namespace bandsaw {
 void encode_environment(const Environment& from, package::Environment& to);
 void encode_light(const DeltaLight& from, package::Light& to);
 
-// The decoders check only the form, not the values (scene/validate.h). They return INVALID_ARGUMENT
-// for an unknown kind or a list of a wrong length.
+// The decoders check only the form; scene/validate.h checks the values. They return
+// INVALID_ARGUMENT for an unknown kind or a list of a wrong length.
 
 /// Decodes the environment of the manifest's background.
 absl::StatusOr<Environment> decode_environment(const package::Environment& from);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Limits of the texts in a manifest (proto/package.proto). Further limits are in
-// proto/wire/limits.h and renderlib/render/settings.h.
+// Limits of the texts in the manifest of a scene package (proto/package.proto): the importer's
+// warnings, and the names of cameras in models. Further limits are in proto/wire/limits.h and
+// renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
-// Checks the head of a manifest (its settings and texts) and the counts of shapes, which follow
-// from the sizes of the blobs. for_each_blob() visits all blobs in a fixed order.
+// A manifest describes a scene package and names the blobs, which are flat arrays, by their
+// digests. This file checks the head of a manifest (its settings and texts), and the counts of
+// shapes, which follow from the sizes of the blobs. for_each_blob() visits all blobs in a fixed
+// order.
 
 #include "renderlib/package/manifest.h"
 
@@ -91,6 +93,7 @@ absl::Status check_range(const std::string& field, std::uint64_t value, std::uin
   return manifest_error(field, absl::StrCat("must lie in [1, ", most, "], is ", value));
 }
 
+/// Checks that there are at most `most` texts, and that none has more than `most_bytes` bytes.
 absl::Status check_texts(const std::string& field,
                          const google::protobuf::RepeatedPtrField<std::string>& texts,
                          std::size_t most, std::size_t most_bytes) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Parsing of manifests (the messages that describe scene packages, proto/package.proto), with all
-// checks that need no blobs.
+// Parsing of manifests (the messages that describe scene packages, proto/package.proto). Does all
+// checks for which the blobs (flat arrays, which a manifest names by their digests) are not needed.
 
 #include <string>
 

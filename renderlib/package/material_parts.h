@@ -2,7 +2,7 @@
 
 // Conversion of the values that describe materials to and from proto/package.proto: colours
 // (Rgb), textures with a factor (Channel, Tint) and references to textures by number. Decoding
-// checks only the form, not the values (scene/validate.h).
+// checks only the form; scene/validate.h checks the values.
 
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// For each kind of material, one function that encodes it and one that decodes it.
+// Converts each kind of material to and from its message in proto/package.proto.
 
 #include "renderlib/package/materials.h"
 
@@ -35,6 +35,7 @@ void encode(const Microfacets& from, package::Microfacets& to) {
   }
 }
 
+/// Encodes the kind of a material into `to`; called by std::visit.
 struct EncodeKind {
   package::Material& to;
 

@@ -12,8 +12,8 @@ namespace bandsaw {
 
 void encode_material(const Material& from, package::Material& to);
 
-/// Decodes a material. `field` is its name in error messages. Checks only the form, not the values
-/// (scene/validate.h). Returns INVALID_ARGUMENT for an unknown kind, an unknown mode or a list of a
+/// Decodes a material, which error messages call `field`. Checks only the form; scene/validate.h
+/// checks the values. Returns INVALID_ARGUMENT for an unknown kind, an unknown mode or a list of a
 /// wrong length.
 absl::StatusOr<Material> decode_material(const package::Material& from, const std::string& field);
 

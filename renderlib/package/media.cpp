@@ -1,5 +1,5 @@
-// Encodes and decodes the coefficients of media, the descriptions of grids, and the placements of
-// boundaries.
+// Encodes and decodes the coefficients of media, the descriptions of grids (by which media vary in
+// space), and the placements of boundaries (the closed shapes that media fill).
 
 #include "renderlib/package/media.h"
 

@@ -1,7 +1,9 @@
 #pragma once
 
-// Conversion of media to and from a manifest (proto/package.proto). The shapes of their boundaries
-// and the numbers of their grids are blobs, which encode.cpp and decode.cpp convert.
+// Conversion of media to and from a manifest (proto/package.proto). A boundary is a closed shape
+// that a medium fills, and a grid states how media vary in space. The shapes of boundaries and the
+// numbers of grids are blobs (flat arrays outside of the manifest). encode.cpp and decode.cpp
+// convert the blobs.
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"

@@ -12,8 +12,8 @@ namespace bandsaw {
 
 void encode_metallic_roughness(const MetallicRoughness& from, package::Gltf& to);
 
-/// Decodes a material. `field` is its name in error messages. Checks only the form, not the values
-/// (scene/validate.h). Returns INVALID_ARGUMENT for a list of a wrong length.
+/// Decodes a material, which error messages call `field`. Checks only the form; scene/validate.h
+/// checks the values. Returns INVALID_ARGUMENT for a list of a wrong length.
 absl::StatusOr<MetallicRoughness> decode_metallic_roughness(const package::Gltf& from,
                                                             const std::string& field);
 

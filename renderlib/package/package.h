@@ -27,7 +27,7 @@ struct PackageInfo {
   std::vector<std::string> warnings;  ///< of the importer
   Integrator integrator = Integrator::kPath;
   Display display = {};
-  std::vector<std::string> model_cameras = {};  ///< names of the cameras of its models
+  std::vector<std::string> model_cameras = {};  ///< names of the cameras in the scene's models
 };
 
 /// A blob to which a manifest refers.
@@ -59,9 +59,9 @@ absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest,
 /// that is wrong, if the manifest, a blob's size or the scene is not valid. Returns the errors of
 /// `blobs`, such as NOT_FOUND or DATA_LOSS.
 ///
-/// `parts` remembers meshes, texels and grids of packages that were decoded with it, as long as
-/// they are in use. The scene shares the parts that are remembered; they are not read again. Other
-/// meshes, texels and grids are read and added to `parts`.
+/// `parts` remembers meshes, texels and grids of earlier packages as long as some scene uses them.
+/// The new scene shares the meshes, texels and grids that `parts` remembers. All others are read
+/// and added to `parts`.
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs,
                                                 DecodedParts* parts = nullptr);
 

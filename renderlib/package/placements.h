@@ -16,9 +16,9 @@ using Instances = google::protobuf::RepeatedPtrField<package::Instance>;
 
 void encode_placements(const Geometry& geometry, Frames& frames, Instances& instances);
 
-/// Appends the frames and instances to `geometry`. Checks only the form, not the values
-/// (scene/validate.h). Returns INVALID_ARGUMENT if a list has a wrong length. In the message,
-/// `prefix` stands before the name of the list's field.
+/// Appends the frames and instances to `geometry`. Checks only the form; scene/validate.h checks
+/// the values. Returns INVALID_ARGUMENT if a list has a wrong length. In the message, `prefix`
+/// stands before the name of the list's field.
 absl::Status decode_placements(const Frames& frames, const Instances& instances,
                                const std::string& prefix, Geometry& geometry);
 

@@ -8,7 +8,7 @@ namespace bandsaw {
 namespace {
 
 // Returns value x numerator / denominator, rounded to the nearest integer and limited to
-// [1, kMaxSide + 1]. A result of kMaxSide + 1 is refused later (settings_of.h).
+// [1, kMaxSide + 1]. validate(RenderSettings) refuses the result kMaxSide + 1.
 std::uint32_t scaled(std::uint32_t value, std::uint32_t numerator, std::uint32_t denominator) {
   const std::uint64_t exact =
       (2 * std::uint64_t{value} * numerator + denominator) / (2 * std::uint64_t{denominator});
