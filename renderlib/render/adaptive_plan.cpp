@@ -1,7 +1,8 @@
-// A half tile is one half of the pixels of a tile (tile_samples.h). The pilot is the first samples
-// of all pixels. An object of the class Pilot holds the errors that the pilot has over some of the
-// pixels, and suggests a level for each tile. The level stands for a factor on the tile's number of
-// samples. gain() evaluates the suggestion on the errors of other pixels.
+// Plans how many samples each half tile gets. A half tile is one half of the pixels of a tile
+// (tile_samples.h). The plan is made from the errors of the pilot, the first samples of all pixels.
+// An object of the class Pilot holds the pilot's errors over some of the pixels, and suggests a
+// level for each tile. The level stands for a factor on the tile's number of samples. gain()
+// evaluates the suggestion on the errors of other pixels.
 
 #include "renderlib/render/adaptive_plan.h"
 
@@ -109,7 +110,7 @@ class Pilot {
 
   const std::vector<TileError>& tiles() const { return tiles_; }
 
-  /// Returns the level of each tile that these errors suggest.
+  /// Returns the levels that the errors suggest, one for each tile.
   std::vector<int> levels() const {
     std::vector<double> weights;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
@@ -119,7 +120,7 @@ class Pilot {
   }
 
  private:
-  /// Returns the weight of a tile with these errors.
+  /// Returns the weight of a tile, given its errors.
   double weight(const TileError& tile) const {
     return std::sqrt((mean_.variance > 0 ? tile.variance / mean_.variance : 0) +
                      (mean_.relative > 0 ? tile.relative / mean_.relative : 0));
@@ -156,10 +157,10 @@ class Pilot {
   TileError mean_;
 };
 
-/// Returns the predicted gain of the plan: the error of uniform sampling over the error with the
-/// plan, at the same number of samples. There are two errors (absolute and relative); the smaller
-/// gain is returned. Each of the two parts of the pixels is planned from the errors of the other
-/// part.
+/// Returns the predicted gain of the plan: the error of uniform sampling divided by the error with
+/// the plan, at the same number of samples. There are two errors (absolute and relative); the
+/// smaller gain is returned. Each of the two parts of the pixels is planned from the errors of the
+/// other part.
 double gain(const std::array<Pilot, 2>& parts) {
   double samples = 0;
   Mean evenly;

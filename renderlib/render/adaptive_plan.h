@@ -71,8 +71,8 @@ TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles
                     std::uint64_t samples);
 
 /// Returns the factor of the half tile's level, 2^-4.5 to 8: the number of its samples divided by
-/// the number that uniform sampling would give it. The minimum, the pilot's samples, is not
-/// applied.
+/// the number that uniform sampling would give it. The function ignores that a half tile has at
+/// least the pilot's samples.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

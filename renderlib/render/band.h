@@ -87,9 +87,9 @@ struct Counters {
   /// kPathGuiding to kIndirectMaps. The same in all bands of an image.
   std::uint32_t techniques = 0;
   static constexpr std::uint32_t kPathGuiding = 1;
-  static constexpr std::uint32_t kPhotonMaps = 2;
-  static constexpr std::uint32_t kPortals = 4;
-  static constexpr std::uint32_t kIndirectMaps = 8;
+  static constexpr std::uint32_t kPhotonMaps = 2;  ///< photon maps of caustics
+  static constexpr std::uint32_t kPortals = 4;     ///< sampling of the background through openings
+  static constexpr std::uint32_t kIndirectMaps = 8;  ///< photon maps of indirect light
   static constexpr std::uint32_t kAllTechniques = 15;
   /// Number of rays of the training of path guiding and of its pilots (short trials that decide
   /// whether guiding pays). The same in all bands of an image, so add() does not sum it.

@@ -97,7 +97,7 @@ absl::Status check(const BandRecord& record) {
     return absl::InvalidArgumentError("counters: more samples are negative than bad");
   }
   if (counters.truncated_paths > most) {
-    return absl::InvalidArgumentError("counters: more paths are truncated than there are");
+    return absl::InvalidArgumentError("counters: more paths are truncated than the band can have");
   }
   if (counters.techniques > Counters::kAllTechniques) {
     return absl::InvalidArgumentError("counters: unknown techniques");
@@ -241,7 +241,7 @@ absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte>
   std::uint64_t hash;
   std::memcpy(&hash, begin + decoded.size - kHashSize, kHashSize);
   if (hash != hash_of({begin, static_cast<std::size_t>(decoded.size - kHashSize)})) {
-    return damaged(offset, "the record's bytes do not have its hash");
+    return damaged(offset, "the hash of the record does not match the bytes before the hash");
   }
   pixels.sums.resize((decoded.size - kHeaderSize - kHashSize) / sizeof(double));
   RETURN_IF_ERROR(read_sums(reader.at(), offset, pixels.sums));

@@ -1,7 +1,8 @@
 #pragma once
 
-// Serialised band sums: written by `bandsaw render --rows`, read by `bandsaw stitch`, and stored by
-// the coordinator. A file is a sequence of records; each is self-describing.
+// Files of bands. A band is a range of samples for some rows of an image, and a record holds the
+// sums of these samples for each pixel. `bandsaw render --rows` writes such files, `bandsaw stitch`
+// reads them, and the coordinator stores them. A file is a sequence of self-describing records.
 //
 // A record, little-endian, no padding:
 //   "BSWBAND4"                                          8 bytes: magic and format version
@@ -21,7 +22,7 @@
 //   cpu_s                                               f64
 //   id of the worker process                            u64
 //   sums                                                f64 x rows x width x 3
-//   hash of all bytes before (render/hash64.h)          u64
+//   hash of all bytes above (render/hash64.h)           u64
 //
 // The fields from rays to training_rays are the Counters of the band (band.h).
 

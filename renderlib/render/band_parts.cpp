@@ -1,4 +1,5 @@
-// Lists the photon maps that a part of a band needs, and divides a part in two.
+// Lists the photon maps that a part of a band needs, and divides a part in two. Each photon map
+// serves a range of samples of all pixels.
 //
 // A half tile is half of the pixels of a tile. In adaptive sampling, each half tile takes a node of
 // samples: an aligned range of 2^k blocks of 8 samples (band.h). halves_of() divides each node of
@@ -72,9 +73,9 @@ std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t widt
   std::vector<std::uint32_t> right(numbers.size());
   for (std::size_t i = 0; 2 * i < numbers.size(); ++i) {
     const SampleRange all = range_at(numbers, i);
-    // The samples of a half tile with several blocks are halved, and those of a half tile with one
-    // block go to the left. If no half tile has several blocks, the number of its map decides
-    // whether a half tile goes to the left or to the right.
+    // The samples of a half tile with several blocks are halved. A half tile with one block goes to
+    // the left. But if no half tile has several blocks, each half tile goes to the left or to the
+    // right by the number of its photon map.
     Halves halves{all, {}};
     if (all.blocks() > 1) {
       halves = split(all);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Divides the samples of a band into parts that need few photon maps each (integrate/caustics.h),
-// so that the memory of the maps is bounded. render_band.cpp renders the parts one after the other.
+// Divides the samples of a band into parts. Each photon map serves a range of samples
+// (integrate/caustics.h), so a part with a few samples needs few photon maps. The division bounds
+// the memory of the maps. render_band.cpp renders the parts one after the other.
 
 #include <cstdint>
 #include <utility>

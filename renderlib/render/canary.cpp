@@ -193,7 +193,7 @@ SceneDescription in_a_cloud() {
 }
 
 /// Returns a scene of an area light, a ball and a wall on a floor, with a black background. In such
-/// a scene, pixels reuse paths.
+/// a scene, neighbouring pixels reuse each other's paths.
 SceneDescription room() {
   SceneDescription scene;
   scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}, ConstantTexture{gray(5)}};
@@ -253,7 +253,8 @@ SceneDescription with_other_materials() {
   return scene;
 }
 
-/// Renders two blocks of samples of the scene and adds the sums of its pixels to the hash.
+/// Renders two blocks of samples of the scene. Adds the sums of its pixels and the number of rays
+/// to the hash.
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
                 const Kernel& kernel) {
   Pool pool(1);

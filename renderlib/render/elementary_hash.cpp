@@ -1,6 +1,6 @@
-// Adds 200 values of each elementary function to the hash of the canary (canary.cpp), so that
-// programs whose functions differ in one bit have different hashes. The arguments cover the usual
-// range of each function.
+// Adds 200 values of each elementary function to the hash of the canary, a small test render by
+// which machines are compared (canary.cpp). So programs whose functions differ in one bit have
+// different hashes. The arguments cover the usual range of each function.
 
 #include "renderlib/math/elementary.h"
 #include "renderlib/render/kernel_code.h"

@@ -20,7 +20,7 @@ constexpr double kDivisorOffset = 0.01;
 
 // Ratio of the variance of T - V to the sum of the squared contributions of the groups to V. T is
 // the squared error of one image. V is the estimate of T from nodes, which are sums over ranges of
-// samples (NodeSums). Both are sums over groups of pixels, which are independent
+// samples (NodeSums). T and V are sums over groups of pixels, and the groups are independent
 // (sampling/sampler.h, render/pixel_groups.h). Assume that the errors within a group are normal
 // and, in the worst case, the same for all its pixels, with variance s. Then the group's
 // contributions to T and V are independent, with variances 2 s^2 and r s^2, where r = 2 for two
@@ -44,8 +44,9 @@ struct Estimated {
   double variance = 0;
 };
 
-/// Returns the estimate for channel k, by the formulas of ErrorSums::add(). The variances of the
-/// nodes are weighed by the squares of their numbers of samples.
+/// Returns the estimate for channel k, by the formulas of ErrorSums::add(). `first` is the mean of
+/// the first two nodes, and `of_first` is the variance of this mean. The variances of the nodes are
+/// weighed by the squares of their numbers of samples.
 Estimated of_channel(absl::Span<const NodeSums> nodes, std::size_t k) {
   const auto half = static_cast<double>(nodes[0].samples);
   const double a = nodes[0].sums[k];

@@ -83,8 +83,9 @@ struct Strip {
   }
 };
 
-/// The division of the image into strips: whole rows, or each row's part of each half tile, in
-/// order.
+/// The division of the image into strips. A strip is a whole row, or the part of a row that lies in
+/// one half tile. The parts of a row are numbered tile by tile from the left. In each tile, the
+/// part of the even half comes first.
 class FilmStrips {
  public:
   FilmStrips(const TileGrid& grid, bool half_tiles) : grid_(grid), half_tiles_(half_tiles) {}

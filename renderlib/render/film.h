@@ -40,21 +40,22 @@ class Film {
   Film& operator=(Film&&) noexcept;
   ~Film();
 
-  /// Adds rows of samples that are not covered. Returns FAILED_PRECONDITION, without changing
-  /// anything, if some samples of a row are covered already; INVALID_ARGUMENT if the band does not
-  /// fit the film; RESOURCE_EXHAUSTED if memory or disk is full. `tiles` says which samples the
-  /// half tiles of the band took. For a film of rows it MUST be TileSamples::whole(): all pixels
-  /// took the samples of the band.
+  /// Adds a band. The samples of the band are then covered in the rows of the band. Returns
+  /// FAILED_PRECONDITION, without changing anything, if some samples of a row are covered already;
+  /// INVALID_ARGUMENT if the band does not fit the film; RESOURCE_EXHAUSTED if memory or disk is
+  /// full. `tiles` says which samples the half tiles of the band took. For a film of rows it MUST
+  /// be TileSamples::whole(): all pixels took the samples of the band.
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
-  /// Returns true if the samples [0, samples) are covered in every row: rendered, or skipped by
-  /// half tiles to which the plan gives no more.
+  /// Returns true if the samples [0, samples) are covered in every row, that is, if bands with
+  /// these samples have been added. In adaptive sampling, a half tile may have taken other samples
+  /// in these bands, or none.
   bool complete(std::uint64_t samples) const;
 
-  /// The image of the samples that are present. A pixel is the mean of its samples [0, n), where n
-  /// is the largest number for which they are all present. They are summed as the summation tree
-  /// prescribes, and the mean is rounded to float once. Rows without samples are black and counted
-  /// in `missing_rows`.
+  /// The image of the samples that are present. A pixel is the mean of its first n samples, where n
+  /// is the largest number for which all of the samples [0, n) are present. The samples are summed
+  /// as the summation tree prescribes, and the mean is rounded to float once. Rows without samples
+  /// are black and counted in `missing_rows`.
   struct Snapshot {
     Image image;
     /// The largest n for which the samples [0, n) are covered in all rows (see complete()).

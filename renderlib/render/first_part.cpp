@@ -1,8 +1,8 @@
 // A film divides the samples of each pixel into two parts of about equal size, and offers the image
 // of the first part by itself. From the images of the two parts, the denoiser learns how noisy the
-// image is. The division is by nodes of the summation tree (ranges of 2^k blocks of samples). For
-// an image that is read from a file, this file computes from the number of a pixel's samples alone
-// how many of them are in the first part.
+// image is. The division is by nodes of the summation tree (ranges of 2^k blocks of samples). An
+// image that is read from a file has no nodes. For such an image, the number of samples in the
+// first part is computed here from the number of a pixel's samples alone.
 
 #include "renderlib/render/first_part.h"
 
@@ -37,7 +37,7 @@ std::uint64_t first_part_samples(std::uint64_t samples) {
   for (std::uint64_t at = whole; at < samples;) {
     const std::uint64_t blocks = std::bit_floor(SampleRange{at, samples}.blocks());
     const std::uint64_t last = std::min(at + blocks * kBlockSamples, samples);
-    // A further node goes to the smaller part, to the first one if both are equal.
+    // A further node goes to the smaller part. If both parts are equal, it goes to the first part.
     (first > second ? second : first) += last - at;
     at = last;
   }

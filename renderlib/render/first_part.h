@@ -1,7 +1,8 @@
 #pragma once
 
-// Computes how many samples Film::first_part() has, for images that are read from files. (A film
-// divides the samples of each pixel into two parts; the denoiser compares their images.)
+// A film divides the samples of each pixel into two parts, and the denoiser compares the images of
+// the two parts. This file computes how many samples the first part (Film::first_part()) has, for
+// images that are read from files.
 
 #include <cstdint>
 #include <vector>
@@ -14,8 +15,8 @@ namespace bandsaw {
 /// there is no more than one block of 8 samples, there are no parts, and the result is 0.
 std::uint64_t first_part_samples(std::uint64_t samples);
 
-/// Returns for each of `pixels` pixels the share of its samples that are in the first part, a
-/// number in (0, 1), as Film::first_part() does. `samples` is the number of samples of each pixel;
+/// Returns a list of `pixels` numbers, like Film::FirstPart::share: for each pixel the share of its
+/// samples that are in the first part, in (0, 1). `samples` is the number of samples of each pixel;
 /// it is more than one block.
 std::vector<float> first_part_shares(std::uint64_t samples, std::size_t pixels);
 /// Does the same for an image that holds the number of samples of each pixel (Film::counts). Each

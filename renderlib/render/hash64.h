@@ -15,7 +15,7 @@
 
 namespace bandsaw {
 
-/// Hashes what is added, in this order.
+/// Hashes the words that are added, in the order in which they are added.
 class Hash64 {
  public:
   void add(std::uint64_t word) {

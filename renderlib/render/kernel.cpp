@@ -1,5 +1,6 @@
-// Selects the kernel, and calls it for Scene::build() and render_band(). This file is compiled for
-// the oldest processor that the program runs on.
+// A kernel is the render code, compiled for one instruction set. This file selects the kernel, and
+// calls it for Scene::build() and render_band(). The file itself is compiled for the oldest
+// processor that the program runs on.
 
 #include "renderlib/render/kernel.h"
 

@@ -46,8 +46,8 @@ struct Kernel {
 /// Returns the kernels of this program that this machine can run, fastest first; at least one.
 std::vector<const Kernel*> kernels();
 
-/// Returns the kernel with this name. Returns INVALID_ARGUMENT, with the names of all kernels(), if
-/// it is not one of them.
+/// Returns the kernel of kernels() with this name. If there is none, returns INVALID_ARGUMENT with
+/// the names of all kernels().
 absl::StatusOr<const Kernel*> find_kernel(absl::string_view name);
 
 }  // namespace bandsaw

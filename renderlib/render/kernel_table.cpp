@@ -1,5 +1,6 @@
-// Defines the function table of one kernel. This file is compiled once for each kernel, with the
-// compiler flags of its instruction set.
+// Defines the function table of one kernel. A kernel is the render code, compiled for one
+// instruction set. This file is compiled once for each kernel, with the compiler flags of the
+// kernel's instruction set.
 
 #include "renderlib/base/simd.h"
 #include "renderlib/render/kernel.h"

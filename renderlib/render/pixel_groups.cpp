@@ -1,5 +1,7 @@
-// Collects the pixels of a half tile (those in even or in odd groups of the tile) and sorts them by
-// the number of their group, which a fixed table gives for each place in a tile.
+// A group is up to eight pixels that may share paths. group_in_tile() gives each pixel of a tile
+// the number of its group. Even numbers form one half tile, and odd numbers form the other half
+// tile. The constructor collects the pixels of a half tile and sorts them by the numbers of their
+// groups.
 
 #include "renderlib/render/pixel_groups.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Groups of pixels that share their paths (integrate/path_reuse.h), in scenes with path reuse.
-// Tiles are squares of 16 x 16 pixels, and half tiles the two halves of their pixels
+// Groups of pixels that share their paths (integrate/path_reuse.h), in scenes with path reuse. A
+// tile is a square of 16 x 16 pixels, and a half tile is half of the pixels of a tile
 // (tile_samples.h).
 //
 // In a whole tile, the groups are those of the pattern (render/tile_pattern.h). In a tile at the
@@ -18,7 +18,7 @@
 
 namespace bandsaw {
 
-/// A pixel of the image, counted from its top left.
+/// A pixel of the image, counted from the top left of the image.
 struct PixelPlace {
   std::uint32_t x = 0;
   std::uint32_t y = 0;

@@ -23,7 +23,8 @@ namespace bandsaw {
 class PixelSums {
  public:
   /// All references and pointers MUST outlive this object. `settings` and `band` MUST be valid.
-  /// The guiding field, the photon maps and the portals are those of `uses`.
+  /// The guiding field, the photon maps and the portals (openings through which the background
+  /// lights a room) are those of `uses`.
   PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
             const PathOptions& uses, const std::atomic<bool>& stop);
 
@@ -32,9 +33,9 @@ class PixelSums {
   /// Returns true if the sums are to be computed with add_groups(), and false if with add_run().
   bool in_groups() const { return reuses_paths_; }
 
-  /// Writes three sums (r, g, b) for each pixel of [first, last) in row y that takes samples.
-  /// `sums` holds the sums of the whole band. Adds to `counters`. Checks `stop` at least once per
-  /// block; once it is set, the sums are unspecified.
+  /// Writes three sums (r, g, b) for each pixel of row y with x in [first, last) to which `tiles`
+  /// gives samples. `sums` holds the sums of the whole band. Adds to `counters`. Checks `stop` at
+  /// least once per block; once it is set, the sums are unspecified.
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> sums, Counters& counters) const;
 
@@ -63,8 +64,8 @@ class PixelSums {
   bool in_band(const PixelPlace& place) const {
     return place.y >= band_.rows.first && place.y < band_.rows.last;
   }
-  /// Takes these samples of the pixels of a group, which may be a single pixel, and writes the sums
-  /// of the pixels that lie in the band.
+  /// Takes the samples `samples` of each pixel in `places`, which are the pixels of a group or a
+  /// single pixel. Writes the sums of the pixels that lie in the band.
   void add_group(absl::Span<const PixelPlace> places, const SampleRange& samples,
                  absl::Span<double> sums, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.

@@ -24,10 +24,10 @@ namespace {
 /// together.
 constexpr std::uint64_t kSamplesPerUnit = 1024;
 
-/// Partition of a band's pixels among threads. A strip is a row, and a unit is a run of
-/// neighbouring pixels in it, because their rays use the same cached data. If pixels share paths, a
-/// strip is the part of a row of tiles that lies in the band, and a unit is some groups of pixels
-/// from one half tile (half of a tile's pixels).
+/// Partition of a band's pixels among threads. A strip is a row, and a unit is a run of pixels of
+/// this row. The pixels of a unit are neighbours, because rays of neighbours use the same cached
+/// data. If pixels share paths, a strip is instead the part of a row of tiles that lies in the
+/// band, and a unit is some groups of pixels from one half tile (half of a tile's pixels).
 class Units {
  public:
   Units(const PixelSums& sums, const Band& band, const TileGrid& grid)

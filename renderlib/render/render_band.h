@@ -17,15 +17,16 @@ namespace bandsaw {
 
 /// Called from a pool thread each time a row is complete, with the number of complete rows. Each
 /// number from 1 to the number of rows is passed once, possibly out of order. Also called with 0
-/// after each step of a preparation (integrate/preparation.h). MUST be fast and thread-safe.
+/// after each step of a preparation, such as the training of path guiding
+/// (integrate/preparation.h). MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
 /// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` says
 /// which samples half tiles (halves of tiles of 16 x 16 pixels, tile_samples.h) take in adaptive
 /// sampling, and MUST include the rows of the band. By default, all half tiles take the samples of
 /// the band. Sums of pixels without samples are zero. `progress` may be empty. Checks `stop` at
-/// least once per row of a tile and returns CANCELLED if it is set. Returns INVALID_ARGUMENT if
-/// settings or band are out of range.
+/// least once per row of a tile, and returns CANCELLED if `stop` is set. Returns INVALID_ARGUMENT
+/// if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
                                        const RowsDone& progress, const TileSamples& tiles = {});

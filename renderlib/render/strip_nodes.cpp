@@ -54,7 +54,8 @@ void merge_all(StripNodes& nodes, RowStore& store) {
     }
     merge_into(nodes[i], nodes[i + 1], store);
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-    // A merge can create a sibling of the previous node, or of the halves before it.
+    // A merge can create a sibling of the previous node. It can also create the third node that the
+    // first two nodes wait for (should_merge).
     i = i >= 2 ? i - 2 : 0;
   }
 }

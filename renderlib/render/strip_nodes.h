@@ -1,7 +1,8 @@
 #pragma once
 
-// The nodes of the summation tree (render/band.h) that a film (film.cpp) holds for one strip: some
-// pixels of a row that always have the same samples.
+// The nodes that a film (film.cpp) holds for one strip. A strip is some pixels of a row that always
+// have the same samples. The samples are added as in a binary tree, and a node is a sum over an
+// aligned range of samples (render/band.h).
 
 #include <cstdint>
 #include <vector>

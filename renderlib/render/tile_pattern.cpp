@@ -1,5 +1,6 @@
-// The pattern states for each pixel of a tile the number of its group. Each tile uses it mirrored
-// horizontally, vertically, both or not at all, as a hash of the tile's position says.
+// The pattern gives each pixel of a tile (16 x 16 pixels) the number of a group. The pixels of a
+// group may share paths. A hash of the tile's position decides whether the tile uses the pattern
+// mirrored horizontally, vertically, both or not at all.
 
 #include "renderlib/render/tile_pattern.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The pattern by which the pixels of a tile form groups. Pixels of a group may share their paths
-// (render/pixel_groups.h). The groups with even numbers are one half of the tile, and the groups
-// with odd numbers are the other half, for adaptive sampling (render/tile_samples.h).
+// The pattern by which the pixels of a tile, a square of 16 x 16 pixels, form groups. Pixels of a
+// group may share their paths (render/pixel_groups.h). Adaptive sampling (render/tile_samples.h)
+// divides a tile into two halves: the groups with even numbers and the groups with odd numbers.
 
 #include <cstdint>
 

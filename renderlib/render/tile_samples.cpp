@@ -1,5 +1,6 @@
-// TileSamples stores a list with a range of samples for each half tile (the unit of adaptive
-// sampling), row by row of tiles. An empty list stands for uniform sampling.
+// TileSamples stores a list with a range of samples for each half tile, row by row of tiles. A half
+// tile is half of the pixels of a tile, and the unit of adaptive sampling. An empty list stands for
+// uniform sampling.
 
 #include "renderlib/render/tile_samples.h"
 
@@ -19,8 +20,8 @@ std::uint32_t tile_rows(const RowRange& rows) {
 /// half tile takes the samples `taken`. The band has the samples `within`, which are one of several
 /// equal parts of the pass; the result is the corresponding part of `taken`. All three arguments
 /// are nodes (aligned ranges of 2^k blocks of 8 samples, band.h). If `taken` has fewer blocks than
-/// there are parts, each block stands for several parts. The first of these parts takes the block,
-/// and the result for each other part is empty.
+/// there are parts, each block stands for several parts. Then the result for the first of these
+/// parts is the block, and the result for each further part is empty.
 SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const SampleRange& within) {
   const std::uint64_t parts = pass.blocks() / within.blocks();
   const std::uint64_t part = (within.first_block() - pass.first_block()) / within.blocks();

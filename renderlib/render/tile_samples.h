@@ -66,8 +66,8 @@ class TileSamples {
   /// takes samples.
   TileSamples(std::uint32_t width, const RowRange& rows);
   /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if the
-  /// count of the numbers is wrong, or if a pair of them is neither empty nor a node that ends at
-  /// or before kMaxSamples.
+  /// count of the numbers is wrong, or if a half tile has samples that are no node or end after
+  /// kMaxSamples.
   static absl::StatusOr<TileSamples> from_numbers(absl::Span<const std::uint32_t> numbers,
                                                   std::uint32_t width, const RowRange& rows);
 
@@ -87,7 +87,7 @@ class TileSamples {
 
   /// Returns the number of samples of all pixels in the band, in an image of this width.
   std::uint64_t count(std::uint32_t width, const Band& band) const;
-  /// Returns the part for some of the rows.
+  /// Returns the same samples for `rows` alone, which are some of the rows of this object.
   TileSamples of(const RowRange& rows) const;
   /// Returns the part for a band. The band has some of the rows, and its samples are a node within
   /// `pass`, for which this object was made. The band takes the corresponding part of each half

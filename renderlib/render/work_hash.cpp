@@ -1,5 +1,5 @@
-// A hash of everything that determines an image except the samples. Bands may be added together
-// only if their hashes are equal.
+// A hash of everything that determines an image except the samples. Bands (rendered rows and
+// samples of an image) may be added together only if their hashes are equal.
 
 #include "renderlib/render/work_hash.h"
 

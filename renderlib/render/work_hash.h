@@ -2,7 +2,7 @@
 
 // A hash that identifies the image that a band belongs to. Workers send it with their bands, and
 // the coordinator compares it with the hash of the job. The job's number is not enough, because
-// numbers are reused after a coordinator's journal is restored from a copy or reset.
+// numbers are reused after a coordinator's journal is reset or restored from a copy.
 
 #include <cstdint>
 
