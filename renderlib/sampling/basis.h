@@ -1,7 +1,7 @@
 #pragma once
 
-// Orthonormal bases around a direction, with which directions sampled around z (sampling/warp.h)
-// are turned into the world.
+// Orthonormal bases around a direction. They turn directions that are sampled around z
+// (sampling/warp.h) into world space.
 
 #include "renderlib/math/vec.h"
 

@@ -1,5 +1,5 @@
-// Stores the cumulative sums of the rows, and of the columns in each row. Sampling searches the
-// row, then the column.
+// Stores cumulative sums of the weights: one list over the rows, and one list over the columns of
+// each row. Sampling searches the row, then the column.
 
 #include "renderlib/sampling/grid_distribution.h"
 

@@ -1,6 +1,7 @@
-// The four dimensions of a group are computed at once: the sample's index is shuffled by an Owen
-// scramble, the Sobol' point of that index is looked up in a table, and each coordinate is
-// scrambled. All this is done on bit-reversed numbers, for which scrambling is cheap.
+// A group is four random numbers of a sample. All four are computed at once: the sample's index is
+// shuffled by an Owen scramble, the Sobol' point of the shuffled index is looked up in a table, and
+// each of its four coordinates is scrambled. All this is done on bit-reversed numbers, for which
+// scrambling is cheap.
 
 #include "renderlib/sampling/sampler.h"
 
@@ -123,7 +124,7 @@ PixelSampler::PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y)
           split_mix(split_mix(seed + kSplitMixIncrement) + ((std::uint64_t{y} << 32) | x))) {}
 
 Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
-  // A sequence has 2^32 points; larger sample numbers use another sequence.
+  // A sequence has 2^32 points. Sample numbers from 2^32 on use further sequences.
   const std::uint64_t sequence = ((sample >> 32) << 32) | group;
   const std::uint64_t base = split_mix(pixel_hash_ + sequence * kSplitMixIncrement);
   const std::uint64_t seeds01 = split_mix(base + kSplitMixIncrement);

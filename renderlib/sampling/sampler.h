@@ -74,9 +74,9 @@ constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce
 /// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice (which
 /// needs more than 32 bits if there are many lights).
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
-/// Sampling of the background through portals at scattering `bounce` (below 2^11). The four numbers
-/// are the choice, u, v and an unused one. The stream of this group is for the transmittance of
-/// media along the shadow ray.
+/// Sampling of the background through portals (openings of a room, guiding/portals.h) at scattering
+/// `bounce` (below 2^11). The four numbers are the choice, u, v and an unused one. The stream of
+/// this group is for the transmittance of media along the shadow ray.
 constexpr std::uint32_t group_portal(std::uint32_t bounce) {
   return 0x10000000u | (bounce & 0x7ffu);
 }
@@ -87,12 +87,12 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
 }
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
 /// A media segment is the part of a ray between two boundaries of media. `which` selects a group.
-/// Group 0 has four numbers: the choice between scattering and passing together with the colour
-/// channel, the free-flight distance, the strategy of light sampling, and the distance of light
-/// sampling. Group 1 is for the point on a light around which equiangular sampling is done (choice,
-/// u, v; medium/equiangular.h). Group 2 is for light sampling (choice, u, v, low bits of the
-/// choice). In media that vary in space, group 0 is for the first collision (choice, distance), and
-/// group 3 is the stream of all further numbers.
+/// Group 0 has four numbers. The first chooses both between scattering and passing, and the colour
+/// channel. The other three are for the free-flight distance, the strategy of light sampling, and
+/// the distance of light sampling. Group 1 is for the point on a light around which equiangular
+/// sampling is done (choice, u, v; medium/equiangular.h). Group 2 is for light sampling (choice, u,
+/// v, low bits of the choice). In media that vary in space, group 0 is for the first collision
+/// (choice, distance), and group 3 is the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;
@@ -103,7 +103,7 @@ enum class ShadowUse : std::uint32_t {
   kLight,          ///< light sampling at a surface or, in a medium that varies, at a collision
   kLightBehind,    ///< light sampling on the far side of a surface
   kEmission,       ///< emission of the surface that the path hits
-  kEnvironment,    ///< local shading: the environment
+  kEnvironment,    ///< the environment, for Integrator::kDirect
   kLens,           ///< light sampling through the lens
   kMediumSegment,  ///< light sampling in media segment 0; segment n has kMediumSegment + n
 };

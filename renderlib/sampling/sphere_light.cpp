@@ -1,5 +1,5 @@
-// A sphere is sampled from outside by the cone that it subtends, and from inside or very near by
-// area.
+// Samples a sphere as seen from a point. If the point is outside, the cone that the sphere subtends
+// is sampled. If the point is inside or very near, the area of the sphere is sampled.
 
 #include "renderlib/sampling/sphere_light.h"
 
@@ -20,8 +20,9 @@ bool sees_cone(double distance2, double radius) {
   return distance2 > radius * radius * (kNear * kNear);
 }
 
-/// On the rim of the visible part, the cosine between the normal and the direction to the point is
-/// 0, and may be positive after rounding. Points with a cosine up to this value count as visible.
+/// On the rim of the visible part, the normal is perpendicular to the direction from `point` to
+/// `position`. After rounding, the cosine of the angle may be positive. Points with a cosine up to
+/// this value count as visible.
 constexpr double kRimCosine = 1e-6;
 
 double area_pdf(double radius) { return kSpherePdf / (radius * radius); }
@@ -43,8 +44,9 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
   const double sin2_max = radius * radius / distance2;
   const double spread = one_minus_cos_from_sin2(sin2_max);  // 1 - cos of the cone's half-angle
   const Vec3 local = sample_cone(u, v, spread);
-  // Let theta be the angle between the direction and the axis, and alpha the angle at the centre
-  // between the axis towards the point and the normal where the direction first meets the sphere:
+  // Let d be the distance, r the radius, and theta the angle between the direction and the axis.
+  // Let alpha be the angle between the direction from the centre to `point` and the normal where
+  // the direction first meets the sphere. Then
   // cos alpha = (d sin^2 theta + cos theta sqrt(r^2 - d^2 sin^2 theta)) / r.
   const double sin2 = local.x * local.x + local.y * local.y;
   const double chord2 = std::max(0.0, 1 - sin2 / sin2_max);

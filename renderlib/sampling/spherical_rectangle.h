@@ -11,8 +11,8 @@
 
 namespace bandsaw {
 
-/// Returns true if u and v are perpendicular within 1e-9 (cosine). Only then may a quad be sampled
-/// as a spherical rectangle.
+/// Returns true if u and v are perpendicular: the cosine of their angle is at most 1e-9 in
+/// magnitude. Only then may a quad be sampled as a spherical rectangle.
 bool is_rectangle(const Vec3& u, const Vec3& v);
 
 class SphericalRectangle {

@@ -58,9 +58,10 @@ Vec2 SphericalTriangle::on_plane(const Vec3& direction) const {
 }
 
 Vec2 SphericalTriangle::sample(double s, double t) const {
-  // Arvo's algorithm with phi = area - alpha, where `area` is s times the solid angle. First a
-  // sub-triangle with the solid angle `area` is found by its vertex c, which lies on the side from
-  // a to the triangle's vertex c. Then a point between this vertex and b is sampled.
+  // Arvo's algorithm with phi = area - alpha, where `area` is s times the solid angle. The
+  // sub-triangle with the vertices a and b and the solid angle `area` has its third vertex on the
+  // side from a to c of the whole triangle. First the direction `c` of this third vertex is
+  // computed. Then a point between `c` and b is sampled.
   const SinCos area = sincos_turns(s * solid_angle_ * (0.5 * kInvPi));
   const double sin_phi = area.sin * cos_alpha_ - area.cos * sin_alpha_;
   const double cos_phi = area.cos * cos_alpha_ + area.sin * sin_alpha_;

@@ -2,9 +2,9 @@
 
 // Samples a triangle as seen from a point, uniformly in solid angle: Arvo 1995, "Stratified
 // Sampling of Spherical Triangles". The solid angle is computed with the formula of Van
-// Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle". Its numerator is a volume,
-// which keeps its precision. The sine of the angle at vertex a comes from a cross product, and the
-// cosine from a dot product.
+// Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle". The numerator of this formula
+// is a volume, which keeps its precision. The sine of the angle at vertex a comes from a cross
+// product, and the cosine from a dot product.
 
 #include <optional>
 
@@ -19,9 +19,9 @@ class SphericalTriangle {
   /// in solid angle.
   static constexpr double kMinSolidAngle = 1e-3;
 
-  /// Creates the triangle a, a + u, a + v as seen from `point`. Returns std::nullopt if its solid
-  /// angle is below kMinSolidAngle or if it is seen edge-on. The caller then samples its area
-  /// instead.
+  /// Creates the triangle a, a + u, a + v as seen from `point`. Returns std::nullopt if the solid
+  /// angle of the triangle is below kMinSolidAngle or if the triangle is seen edge-on. The caller
+  /// then samples the area of the triangle instead.
   static std::optional<SphericalTriangle> seen_from(const Vec3& point, const Vec3& a, const Vec3& u,
                                                     const Vec3& v);
 

@@ -1,6 +1,7 @@
 // A tent is the linear interpolation kernel of a texel. It rises on one side of the texel's centre
-// and falls on the other. Sampling chooses one of the two sides, and then a point on this side. In
-// latitude the density has a factor sin(theta), and Newton's method inverts the distribution.
+// and falls on the other side. Sampling chooses one of the two sides, and then a point on this
+// side. In latitude the density has a factor sin(theta), and Newton's method inverts the
+// distribution.
 
 #include "renderlib/sampling/tent.h"
 
@@ -78,7 +79,8 @@ struct LatitudeTent {
     const double half = sincos_turns(width * (0.25 * kTurnsPerRadian)).sin;
     return 2 * half * half;
   }
-  /// above() and below() return the integral over a side, per radian of longitude.
+  /// above() and below() return the integral of the density over the side above or below the
+  /// centre, per radian of longitude.
   double above() const { return first ? cap() : side(-1).mass(); }
   double below() const { return last ? cap() : side(1).mass(); }
 

@@ -20,8 +20,8 @@ double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double 
 /// latitude-longitude image with `rows` rows. theta in [0, pi] is measured from the top of the
 /// image.
 double latitude_tent_solid_angle(std::uint32_t row, std::uint32_t rows);
-/// Samples theta, in radians, with a pdf proportional to tent * sin(theta), for the same tent; v in
-/// [0, 1).
+/// Samples theta, in radians, for the tent of row `row`, with a pdf proportional to
+/// tent * sin(theta); v in [0, 1).
 double sample_latitude_tent(std::uint32_t row, std::uint32_t rows, double v);
 
 }  // namespace bandsaw

@@ -42,8 +42,9 @@ inline double one_minus_cos_from_sin2(double sin2) {
   return sin2 / (1 + std::sqrt(std::max(0.0, 1 - sin2)));
 }
 
-/// Converts an area pdf at `to`, whose unit normal is `normal`, to the solid-angle pdf of the
-/// direction from `from`; infinite if that direction lies in the surface.
+/// Converts an area pdf at the point `to` of a surface to the solid-angle pdf of the direction from
+/// `from` to `to`. `normal` is the surface's unit normal at `to`. If the direction lies in the
+/// surface, the result is infinite.
 inline double solid_angle_pdf(double area_pdf, const Vec3& from, const Vec3& to,
                               const Vec3& normal) {
   const Vec3 direction = to - from;
