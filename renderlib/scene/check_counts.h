@@ -35,7 +35,8 @@ absl::Status check_mesh_counts(absl::string_view field, std::uint64_t triangles,
 /// the scene or group that `field` names.
 absl::Status check_shape_counts(absl::string_view field, const ShapeCounts& counts);
 
-/// Runs both checks for a whole geometry. `prefix` is prepended to the names of fields.
+/// Runs check_mesh_counts() and check_shape_counts() for all parts of a geometry. `prefix` is
+/// prepended to the names of fields.
 absl::Status check_geometry_counts(absl::string_view prefix, const Geometry& geometry);
 
 }  // namespace bandsaw

@@ -12,9 +12,10 @@ namespace bandsaw {
 /// and panes before it. If there is no such surface, the value is L / (1 + L), where L is the
 /// background's radiance.
 inline constexpr Integrator kGuideAlbedo{10};
-/// The values (x, y, d) of the same surface as for kGuideAlbedo. x and y are the components n of
-/// its shading normal to the right and upwards in the camera's view, each as (n + 1) / 2. d is the
-/// path length to the surface. If there is no such surface, the values are (0.5, 0.5, 0).
+/// Three values (x, y, d) of the surface that kGuideAlbedo uses. x is (n + 1) / 2, where n is the
+/// component of the surface's shading normal towards the right of the camera's view. For y, n is
+/// the component upwards in the view. d is the path length to the surface. If there is no such
+/// surface, the values are (0.5, 0.5, 0).
 inline constexpr Integrator kGuideShape{11};
 inline constexpr int kLastGuideIntegrator = 11;
 

@@ -45,8 +45,8 @@ constexpr bool computes_radiance(Integrator integrator) {
 /// "path_scattering", "path_guided" or "path_plain"; for the guides of the denoiser
 /// (guide_integrators.h) "guide_albedo" or "guide_shape".
 absl::string_view integrator_name(Integrator integrator);
-/// Returns the integrator with this name. Returns std::nullopt if no integrator has this name, or
-/// if it is the name of a guide of the denoiser.
+/// Returns the integrator with this name. Returns std::nullopt for the two guides of the denoiser,
+/// because users cannot select them, and for names that are not known.
 std::optional<Integrator> integrator_named(absl::string_view name);
 
 /// Scene parameters of kDirect and kAmbientOcclusion.

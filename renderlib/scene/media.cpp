@@ -1,4 +1,5 @@
-// Makes the unit shapes of boundaries, and validates media, grids and boundaries.
+// Makes the unit shapes of boundaries (the closed shapes that media fill). Validates media, their
+// boundaries, and the grids by which they vary in space.
 
 #include "renderlib/scene/media.h"
 

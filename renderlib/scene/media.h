@@ -1,11 +1,11 @@
 #pragma once
 
-// Media of a scene and the regions they fill: closed shapes, and everything around them.
+// Media of a scene and the regions they fill: closed shapes, which are called boundaries, and
+// everything around them.
 //
-// The medium at a point depends on the point alone, not on the path of the light. Among the closed
-// shapes that contain the point, the one whose medium has the highest number counts, i.e. the
-// medium that the scene names last. Outside of all shapes the medium is the fog; without fog there
-// is none.
+// The medium at a point depends on the point alone, not on the path of the light. If several
+// boundaries contain the point, the medium with the highest number counts, i.e. the medium that the
+// scene names last. Outside of all boundaries the medium is the fog; without fog there is none.
 //
 // A medium may vary in space as given by grids (medium/medium.h). The grids lie in the space of the
 // medium, which moves with the boundary. It is the space of the boundary's frame

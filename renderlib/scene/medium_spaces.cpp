@@ -1,4 +1,6 @@
-// A medium varies in the space of the frame of its boundary. This file stores the frame of each
+// A medium may vary in space. Such a medium moves with its boundary (the closed shape that it
+// fills): it varies in the space of the boundary's frame (a coordinate system that may move). This
+// file stores the frame of each
 // boundary before static boundaries lose their frames (static_instances.h), and computes the map
 // from the world to the frame. The map of a static boundary is computed once. The map of a boundary
 // that moves is computed anew for each time.

@@ -1,8 +1,9 @@
 #pragma once
 
-// The spaces in which media vary (scene/media.h). A medium varies in the space of the frame with
-// which its boundary moves; without a frame that is the space of the world. MediumSpaces maps
-// points of the world to this space. A Scene holds one MediumSpaces.
+// The spaces in which media vary (scene/media.h). A medium moves with its boundary (the closed
+// shape that it fills), so it varies in the space of the boundary's frame, a coordinate system that
+// may move. If the boundary has no frame, the medium varies in world space. MediumSpaces maps
+// points of the world to the space of a medium. A Scene holds one MediumSpaces.
 
 #include <cstdint>
 #include <vector>

@@ -94,8 +94,8 @@ std::size_t clean_shapes(Shapes& shapes) {
                        [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
 }
 
-/// The meshes of earlier scenes, which were cleaned when those scenes were built, each with the
-/// number of triangles that it lost.
+/// The meshes that were cleaned when an earlier scene was built. The second entry is the number of
+/// triangles that the mesh lost.
 using CleanMeshes = std::map<const Mesh*, std::size_t>;
 
 /// Removes quads and triangles whose area is zero or not finite (e.g. because a vertex is not

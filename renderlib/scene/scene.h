@@ -89,8 +89,8 @@ class Scene {
   bool reuses_paths() const { return reuses_paths_; }
   /// Returns the number of primitives that were removed because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
-  /// Returns the cache of the fields of path guiding and of photon maps. Each is a pure function of
-  /// the scene and a key, and is made when it is first used. Thread-safe.
+  /// Returns the cache of the fields of path guiding and of photon maps. Each field or map is a
+  /// pure function of the scene and a key, and is made when it is first used. Thread-safe.
   GuidingCache& guiding() const { return *guiding_; }
 
   ~Scene();

@@ -1,5 +1,6 @@
-// An instance is static if each frame above it has a constant transform throughout the shutter
-// interval.
+// Instances are placed in frames, which are coordinate systems that may move. A frame may have a
+// parent frame. An instance is static if its frame and all frames above have constant transforms
+// throughout the shutter interval.
 
 #include "renderlib/scene/static_instances.h"
 
@@ -26,7 +27,7 @@ void make_static(Geometry& geometry) {
   const Interval& interval = geometry.shutter;
   std::vector<bool> still;
   for (const Frame& frame : geometry.frames) {
-    // A parent precedes its children, so it has been decided.
+    // A parent precedes its children, so `still` has an entry for the parent.
     const bool parent_is_still = frame.parent == kNoFrame || still[index_of(frame.parent)];
     still.push_back(parent_is_still &&
                     (interval.open == interval.close || is_constant(frame, interval)));

@@ -7,10 +7,10 @@
 
 namespace bandsaw {
 
-/// Makes an instance static if its frames have the same transform throughout Geometry::shutter.
-/// Such an instance gets its placement in the world as `to_world`, and loses its frame. The new
-/// `to_world` has the same bits as the placement that is computed from the frames, so no pixel
-/// changes.
+/// Makes an instance static if the frames in which it is placed (coordinate systems that may move)
+/// have constant transforms throughout Geometry::shutter. Such an instance gets its placement in
+/// the world as `to_world`, and loses its frame. The new `to_world` has the same bits as the
+/// placement that is computed from the frames, so no pixel changes.
 void make_static(Geometry& geometry);
 
 /// Returns true if any instance moves or deforms while the shutter is open.

@@ -1,4 +1,5 @@
-// Checks each list of the geometry, and then each entry, with the field's path in errors.
+// Checks the shapes, meshes, groups, frames and instances of a scene, one entry after the other.
+// Errors name the path of the field.
 
 #include <array>
 #include <cmath>
@@ -70,7 +71,7 @@ absl::Status check_shapes(const std::string& where, const Shapes& shapes, std::s
   return check_list(where + "disks", shapes.disks, materials);
 }
 
-/// Checks that a list has no entry, or one entry for each position of its mesh.
+/// Checks that a list of `count` entries is empty or has one entry for each position of its mesh.
 absl::Status check_one_per_position(const std::string& field, std::size_t count,
                                     std::size_t positions) {
   if (count != 0 && count != positions) {

@@ -127,8 +127,8 @@ absl::Status check_emission(const std::string& field, const Emission& emission,
              : check_texture(field + ".radiance", radiance.texture, textures, infinite);
 }
 
-/// Checks the properties that every kind of material can have. A glass may have a priority, which
-/// decides which one is present where several glasses overlap (material/interiors.h).
+/// Checks the properties that every kind of material can have. A glass may have a priority. Where
+/// several glasses overlap, the priorities decide which glass is present (material/interiors.h).
 absl::Status check_common(const std::string& field, const Material& material,
                           const std::vector<Texture>& textures) {
   RETURN_IF_ERROR(check_relief(field + ".relief", material.relief, textures));

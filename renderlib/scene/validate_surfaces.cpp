@@ -45,7 +45,8 @@ absl::Status check_image(const std::string& field, const ImageTexture& image) {
 }
 
 absl::Status check_textures(const std::vector<Texture>& textures) {
-  std::vector<std::uint64_t> cost;  // one entry for each checked texture (check_parts)
+  // The number of textures that one lookup evaluates, for each checked texture (check_parts).
+  std::vector<std::uint64_t> cost;
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const std::string field = item("textures", i);
     if (const absl::Status parts = check_parts(textures, i, cost); !parts.ok()) {

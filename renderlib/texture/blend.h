@@ -6,7 +6,7 @@
 
 namespace bandsaw {
 
-/// Returns a + (b - a) t. If a == b, the result is exactly this colour, to the bit.
+/// Returns a + (b - a) t. If a == b, the result is a, to the bit.
 inline Rgb blend(const Rgb& a, const Rgb& b, float t) {
   return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
 }

@@ -18,8 +18,10 @@ inline constexpr std::size_t kMaxRampStops = 256;
 inline constexpr std::uint32_t kMaxOctaves = 16;
 
 /// Returns INVALID_ARGUMENT, e.g. "checker.even: must be below 3, the index of this texture; it is
-/// 4", in three cases: textures[index] refers to a texture that does not precede it, one of its
-/// numbers is out of range, or one lookup of it would evaluate more than kMaxTextureParts textures.
+/// 4", in three cases:
+/// - textures[index] refers to a texture that does not precede it in the list,
+/// - a number of textures[index] is out of range,
+/// - one lookup of textures[index] would evaluate more than kMaxTextureParts textures.
 /// The values of constants and texels are not checked.
 ///
 /// cost[i] is the number of textures that one lookup of textures[i] evaluates. `cost` MUST have

@@ -12,7 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns a number of the image as a linear value; `index` counts channels.
+/// Returns one channel of one texel as a linear value. `index` is its index among the channels of
+/// all texels.
 float value(const ImageTexture& image, std::size_t index) {
   if (image.format == ImageTexture::Format::kFloat32) {
     float value;
@@ -54,7 +55,7 @@ double wrapped(double x, ImageTexture::Wrap wrap) {
 }
 
 /// Returns the column or row of a texel for an index in [-1, size]. Beyond the edge of a mirrored
-/// image the neighbour of a texel is the texel itself.
+/// image, the neighbour of a texel is the texel itself.
 std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wrap wrap) {
   const std::int64_t last = std::int64_t{size} - 1;
   if (wrap == ImageTexture::Wrap::kRepeat) {

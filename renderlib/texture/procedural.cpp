@@ -14,7 +14,7 @@ namespace bandsaw {
 namespace {
 
 /// Returns 0 or 1, alternating from cell to cell; 0 if x is not finite. Each cell begins early, by
-/// `slack`.
+/// `slack`, so that a plane on a border between cells has one texture.
 double parity(double x, double slack) {
   const double cell = std::floor(x + slack);
   const double bit = cell - 2 * std::floor(cell / 2);

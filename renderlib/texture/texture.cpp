@@ -1,6 +1,6 @@
-// Each function on a texture has a visitor of the variant: for its value at a point, its maximum,
-// its mean, its repetitions, and whether it uses positions in object space. Visitors follow
-// references to other textures.
+// Computes the value of a texture at a point, its maximum, its mean and its repetitions, and finds
+// out whether it uses positions in object space. Each of these functions has a visitor of the
+// variant, which follows references to other textures.
 
 #include "renderlib/texture/texture.h"
 

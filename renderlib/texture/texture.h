@@ -36,7 +36,8 @@ struct UvTransform {
 /// An image. Its texels keep their original format: an 8-bit image takes a byte per channel and
 /// texel. They may lie in a mapped file.
 struct ImageTexture {
-  /// 8 bits with the transfer function of sRGB; 8 bits, linear (255 is 1); linear floats.
+  /// kSrgb8: 8 bits with the transfer function of sRGB. kLinear8: 8 bits, linear (255 is 1).
+  /// kFloat32: linear floats.
   enum class Format : std::uint8_t { kSrgb8, kLinear8, kFloat32 };
   enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
   enum class Filter : std::uint8_t { kBilinear, kNearest };
