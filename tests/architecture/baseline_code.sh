@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks that only the AVX2 kernel contains instructions that x86-64 processors without AVX2 lack. Disassembles only the
-# objects of Bandsaw itself, because system libraries check the processor at run time. Usage: baseline_code.sh BUILD-FOLDER
+# Checks that only the AVX2 kernel contains instructions that x86-64 processors without AVX2 lack. This kernel is the render code,
+# compiled for processors with AVX2. Disassembles only the objects of Bandsaw itself, because system libraries check the
+# processor at run time. Usage: baseline_code.sh BUILD-FOLDER
 set -euo pipefail
 cd "$1"
 # VEX-coded instructions (AVX, AVX2, FMA, F16C), and those of BMI1, BMI2, LZCNT and MOVBE. tzcnt is allowed: older processors

@@ -1,5 +1,5 @@
-// Walkthroughs are sections of READMEs, named "Walkthrough: …" or "Adding …", that lead through the
-// source files. Checks that every file that they name exists.
+// Walkthroughs are sections of READMEs which lead through the source files. Their headings begin
+// with "Walkthrough:" or "Adding ". Checks that every file named in a walkthrough exists.
 
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ TEST(Walkthroughs, NameFilesThatExist) {
   EXPECT_GE(all.size(), 4u);  // fewer: the search has missed some
   for (const Walkthrough& walkthrough : all) {
     const std::vector<std::string> paths = paths_in(walkthrough.text);
-    EXPECT_GE(paths.size(), 5u) << walkthrough.heading;
+    EXPECT_GE(paths.size(), 5u) << walkthrough.heading;  // fewer: paths_in() has missed some
     for (const std::string& path : paths) {
       EXPECT_TRUE(exists(walkthrough, path, paths))
           << walkthrough.readme << ", " << walkthrough.heading << ": there is no " << path;

@@ -7,7 +7,7 @@
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
 # The first samples of an adaptive render are its pilot, which decides where more samples are taken. If the pilot has fewer than 32
 # samples a pixel, nothing is planned. So ERROR should be so small that a render takes some 200 samples a pixel or more.
-# The environment variable TIMES: a reference has this many times the samples of a uniform image (default 8).
+# The environment variable TIMES (default 8) is the number of samples of a reference, divided by that of a uniform image.
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}
 width=${2:-128}
@@ -22,6 +22,7 @@ gallery=$(dirname "$(realpath "$bandsaw")")/../share/bandsaw/gallery  # with the
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
+# Prints the number in field $1 of a line of JSON.
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 
 # Renders $scene with $seed and prints: CPU seconds, samples a pixel, relative MSE, relative RMSE, estimated error.
@@ -48,8 +49,8 @@ for wanted in "${scenes[@]}"; do
   for ((seed = 1; seed <= seeds; ++seed)); do
     even=$(measure "$error")
     adaptive=$(measure "$error" --adaptive)
-    # The squared error is about proportional to 1 / time, which gives the error to ask for. With equal samples (fields 2 and 7)
-    # nothing was planned, and the times differ only by noise.
+    # The squared error is about proportional to 1 / time. From this follows the error limit that takes the time of the uniform
+    # render. With equal samples (fields 2 and 7) nothing was planned, and the times differ only by noise.
     longer=$(echo "$even $adaptive ${error%\%}" | awk '{ if ($2 != $7) print $11 * sqrt($6 / $1) "%" }')
     if [ -n "$longer" ]; then adaptive=$(measure "$longer" --adaptive); fi
     echo "$even $adaptive"

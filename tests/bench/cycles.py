@@ -1,9 +1,9 @@
-"""Renders a scene of Bandsaw with Cycles, for peers.sh.
+"""Renders a scene of Bandsaw with Cycles, Blender's renderer. peers.sh compares the two renderers.
 
 blender -b --python cycles.py -- SCENE.textproto WIDTH HEIGHT SAMPLES SEED OUTPUT.exr
 Prints "cpu_s=…": the CPU seconds of SAMPLES - 1 samples a pixel. The program subtracts the time of
-a render with one sample from that of a render with SAMPLES samples. So the preparation of the scene
-does not count.
+a render with one sample from the time of a render with SAMPLES samples, so that the preparation of
+the scene does not count.
 
 Supports perspective cameras with a lens, quads, spheres (as meshes, because Cycles has no spheres),
 models in PLY files without a transform, diffuse, emissive, metal and dielectric materials of one
@@ -103,6 +103,7 @@ def add_object(mesh, material):
     return thing
 
 
+# Returns the mesh of a sphere of radius 1 with this many segments around its axis.
 def sphere_mesh(segments):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=segments // 2, radius=1)
     thing = bpy.context.object
@@ -112,6 +113,8 @@ def sphere_mesh(segments):
     return mesh
 
 
+# Adds the shapes and models of the message `scene`. `materials` has Blender's material for each
+# name. The files of models are relative to `folder`.
 def add_shapes(scene, materials, folder):
     spheres = {}
     for shape in scene.get("shape", []):
@@ -158,6 +161,7 @@ def set_camera(fields):
         camera.data.dof.aperture_fstop = camera.data.lens * 1e-3 / fields["aperture"][0]
 
 
+# Makes the background: one colour, or a gradient in height from `bottom` to `top`.
 def set_background(fields):
     world = bpy.context.scene.world = bpy.data.worlds.new("world")
     world.use_nodes = True

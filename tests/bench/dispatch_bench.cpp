@@ -1,12 +1,12 @@
 // A band is a range of rows and samples of an image. Measures what a band costs the real
 // coordinator, which receives each band through gRPC with TLS and writes it to the disk. Also
 // measures how much memory a connected worker takes. The workers are null workers: they render
-// nothing and answer each lease at once with black rows.
+// nothing. They answer each lease (the order to render a band) at once with black rows.
 //
 //   dispatch_bench [SECONDS [WORKERS]]
 //
-// Bands are sent for SECONDS (default 10) with each of several numbers of workers, 1 to 16. Then
-// WORKERS (default 1000) connect, and the memory is measured.
+// First 1, then 4, 5, 6 and 16 workers send bands, each time for SECONDS (default 10). Then WORKERS
+// (default 1000) connect, and the memory is measured.
 
 #include <unistd.h>
 

@@ -18,7 +18,8 @@ class EmbreeKernel {
   static std::unique_ptr<EmbreeKernel> create(const Mesh& mesh, bool robust, const char* config);
   ~EmbreeKernel();
 
-  /// Both return whether the ray hits the mesh; `closest` finds the closest hit, `occluded` any.
+  /// Both functions return whether the ray hits the mesh. `closest` searches for the closest hit,
+  /// and `occluded` for any hit.
   bool closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
   double build_seconds() const;  ///< wall clock

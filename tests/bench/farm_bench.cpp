@@ -1,10 +1,12 @@
 // Measures how well the scheduler uses its workers' time. The workers are simulated in virtual
-// time, and a band takes the time that a cost map gives it. So only the last column of the table,
-// the CPU time of a band, depends on this machine.
+// time, and a band (the rows and samples that one lease gives to a worker) takes the time that a
+// cost map gives it. So only the last column of the table, the CPU time of a band, depends on this
+// machine.
 //
-// Efficiency: the work of the job, divided by the work that the workers could do from the first
-// lease to the last result. Tail: the share of this time in which some worker was idle at the end
-// of the job. Audit: the share of bands that a second worker renders too, to compare the pixels.
+// The time of a job goes from the first lease to the last result. Efficiency: the work of the job,
+// divided by the work that the workers could do in the time of the job. Tail: the last part of the
+// time, in which some worker was idle, as a share of the whole time. Audit: the share of bands that
+// a second worker renders too, to compare the pixels.
 
 #include <algorithm>
 #include <cstdio>
@@ -82,8 +84,8 @@ bool measure(const char* name, BenchFarm farm) {
 int main() {
   std::printf(
       "| 1920x1080, 64 samples, 60 s of work for all workers together; 10 runs | efficiency | "
-      "tail | bands rendered for nothing or to compare | "
-      "CPU a band, of coordinator and simulation |\n"
+      "tail | bands rendered in vain or for audits | "
+      "CPU time a band, coordinator and simulation together |\n"
       "| --- | --- | --- | --- | --- |\n");
   bool ok = true;
   for (const double audit : {0.0, 0.01}) {
@@ -92,11 +94,13 @@ int main() {
       farm.audit_share = audit;
       ok = measure((std::string(what) + with).c_str(), farm) && ok;
     };
-    row("16 equal workers, even", {.speeds = speeds(16, 60, true), .cost_of = even});
-    row("16 equal workers, uneven 20:1", {.speeds = speeds(16, 60, true), .cost_of = uneven});
-    row("16 workers of speeds 1:4, even", {.speeds = speeds(16, 60, false), .cost_of = even});
+    row("16 equal workers, even", {.speeds = speeds(16, 60, /*equal=*/true), .cost_of = even});
+    row("16 equal workers, uneven 20:1",
+        {.speeds = speeds(16, 60, /*equal=*/true), .cost_of = uneven});
+    row("16 workers of speeds 1:4, even",
+        {.speeds = speeds(16, 60, /*equal=*/false), .cost_of = even});
     row("16 workers of speeds 1:4, uneven 20:1, times ± 30 %",
-        {.speeds = speeds(16, 60, false), .cost_of = uneven, .noise = 0.3});
+        {.speeds = speeds(16, 60, /*equal=*/false), .cost_of = uneven, .noise = 0.3});
   }
   return ok ? 0 : 1;
 }

@@ -4,7 +4,8 @@
 //
 //   loss: time until the loss of a worker is detected
 //   pixels: time until the first pixels of a job arrive
-//   again: finished bands that are rendered again after the coordinator was killed
+//   again: finished bands (parts of an image) that are rendered again after the coordinator was
+//     killed
 //   left: error of the remaining time that is reported during a job
 
 #include "tests/bench/farm_figures.h"

@@ -23,10 +23,11 @@ struct Figure {
 /// killed, frozen (SIGSTOP) or disconnected.
 std::vector<Figure> loss_figures();
 
-/// Time from the start of `bandsaw submit` to the first finished rows that it reports.
+/// Time from the start of `bandsaw submit` to the command's first report of finished samples.
 std::vector<Figure> first_pixel_figures();
 
-/// Number of finished bands that were rendered again after the coordinator was killed by SIGKILL.
+/// Number of finished bands (parts of the image) that were rendered again after the coordinator was
+/// killed by SIGKILL.
 Figure rendered_again_figure();
 
 /// Error, in percent, of the remaining time that is reported after a quarter of a job's time.

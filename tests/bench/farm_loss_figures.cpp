@@ -1,5 +1,5 @@
-// Measures the time until a coordinator detects the loss of a worker, and how many finished bands
-// are rendered again after the coordinator was killed.
+// Measures the time until a coordinator detects the loss of a worker. Also counts how many finished
+// bands (parts of the image) are rendered again after the coordinator was killed.
 
 #include <csignal>
 #include <functional>

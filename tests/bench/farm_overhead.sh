@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Measures the overhead of a farm of one local worker over `bandsaw render`, by paired runs of the same job in alternating order.
-# The images must be equal. Prints the median ratios of the wall clock time and of the CPU time of all processes (coordinator,
-# worker and submitter for the farm). Other work on the machine disturbs the wall clock time more than the CPU time.
+# Compares a farm of one local worker with `bandsaw render`, by paired runs of the same job in alternating order. The images must
+# be equal. Prints the time of the farm divided by the time of `bandsaw render`, as the median over the pairs: first the wall clock
+# time, then the CPU time of all processes (for the farm: coordinator, worker and submitter). Other work on the machine disturbs the
+# wall clock time more than the CPU time.
 # Usage: tests/bench/farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION-OF-RENDER...]]]
 #   a job of 60 s or more:       farm_overhead.sh build/release/bin 3 cornell --samples 256
 #   a 4K image of 16 samples:    farm_overhead.sh build/release/bin 1 books/one_weekend --width 3840 --height 2160 --samples 16
@@ -46,5 +47,5 @@ for ((i = 1; i <= pairs; ++i)); do
 done
 
 median() { awk "{ print $1 }" "$scratch/pairs" | sort -n | sed -n "$(((pairs + 1) / 2))p"; }
-echo "median of farm over local: wall $(median '$1 / $3'), CPU $(median '$2 / $4')"
+echo "median ratio of farm to local render: wall $(median '$1 / $3'), CPU $(median '$2 / $4')"
 awk '{ printf "wall %.4f  farm %.2f s, local %.2f s   CPU %.4f  farm %.2f s, local %.2f s\n", $1 / $3, $1, $3, $2 / $4, $2, $4 }' "$scratch/pairs"

@@ -20,7 +20,7 @@ namespace {
 using test::FarmProcesses;
 using test::Process;
 
-constexpr int kRuns = 5;
+constexpr int kRuns = 5;   // runs with each scene of first_pixel_figures()
 constexpr int kSeeds = 4;  // runs, with different seeds, of each job of time_left_figure()
 
 std::string gallery(const std::string& scene) {
@@ -54,8 +54,9 @@ double first_pixels(const FarmProcesses& farm, const std::string& scene, int see
   return took;
 }
 
-/// Writes a scene with a height field of 522,242 triangles (10 MB as a file, 9.4 MB as blobs) and
-/// returns its path. The scene differs for each `seed`, so that no machine has it already.
+/// Writes a scene with a height field of 522,242 triangles (10 MB as a file, 9.4 MB in the package
+/// that is sent to workers). Returns the path of the scene. The scene differs for each `seed`, so
+/// that no machine has it already.
 std::string hills(const FarmProcesses& farm, int seed) {
   constexpr int kSide = 512;
   const std::string name = "hills" + std::to_string(seed);

@@ -38,8 +38,9 @@ struct Variant {
   std::vector<double> ratios;
 };
 
-/// Returns the scene with its own features, twice; then with each unused feature forced; then with
-/// all features forced.
+/// Returns the scene with its own features, twice, so that the second one shows the noise of the
+/// measurement. Then follow the scene with each unused feature forced, and with all features
+/// forced.
 std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool) {
   std::vector<Variant> out = {{"own", Scene::build(description, pool).value(), {}}};
   const SceneFeatures own = out[0].scene->features();
@@ -115,7 +116,8 @@ void measure(const std::string& path, Pool& pool) {
 int main(int argc, char** argv) {
   bandsaw::Pool pool(1);
   std::puts(
-      "| scene | forced features | CPU time, over that with own features | middle half of runs |\n"
+      "| scene | forced features | CPU time, divided by that with own features | middle half of "
+      "runs |\n"
       "| --- | --- | --- | --- |");
   for (int i = 1; i < argc; ++i) {
     bandsaw::measure(argv[i], pool);
