@@ -2,7 +2,8 @@
 # Measures what the frames of a sequence cost beyond their samples, on a farm of one local worker with one thread. Prints:
 # - a ratio: the time of all frames, from the start of `bandsaw submit` to its end, divided by the time in which `bandsaw render`
 #   renders the same number of samples in one image after it has read the scene;
-# - the time until the first frame is written, the bytes that are sent for a frame, and the CPU time of each process.
+# - the time until the first frame is written, the bytes that a frame adds to the files of the coordinator, and the CPU time and
+#   the most memory of each process.
 # Usage: tests/bench/frames.sh FOLDER-OF-PROGRAMS [FRAMES [SQUARES...]]
 #   SQUARES: the scene is a rippled plane of SQUARES x SQUARES squares (frames_scene.py); 200 and 1000 by default
 set -euo pipefail
@@ -19,6 +20,8 @@ serve_here "$scratch/serve.log" --web none
 work_here local "$scratch/worker.log" --threads 1
 export BANDSAW_FARM=$data/farm
 
+# cpu PID prints the CPU seconds of a process, and memory PID its most resident memory. blob_bytes prints the size of the scene data
+# that the coordinator keeps.
 cpu() { sed 's/.*) //' "/proc/$1/stat" | cut -d ' ' -f 12,13 | awk -v hz="$(getconf CLK_TCK)" '{ print ($1 + $2) / hz }'; }
 memory() { sed -n 's/^VmHWM:[^0-9]*\([0-9]*\) kB/\1/p' "/proc/$1/status" | awk '{ printf "%.0f MB", $1 / 1024 }'; }
 blob_bytes() { du -sb "$data/blobs" | cut -f 1; }

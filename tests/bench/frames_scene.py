@@ -2,7 +2,7 @@
 """Writes a glTF file (.glb) for frames.sh: a rippled plane of N x N squares under a camera that moves for 400 seconds.
 
 Usage: frames_scene.py FILE N
-The vertices have positions, normals and uvs: 32 bytes each, and a square has 24 bytes of indices. N = 4300 is 1 GB.
+A vertex has 32 bytes (position, normal and uv), and a square has 24 bytes of indices. With N = 4300 the file has 1 GB.
 """
 
 import json
@@ -28,7 +28,8 @@ def grid(n):
     return positions, normals, uvs, corners.reshape(-1).astype("<u4")
 
 
-# Writes the file. The numbers 5126 and 5125 are glTF's codes of float32 and uint32.
+# Writes the plane of n x n squares to the file `path`. The numbers 5126 and 5125 are glTF's codes of float32 and
+# uint32.
 def main(path, n):
     positions, normals, uvs, indices = grid(n)
     times = np.array([0, 400], "<f4")

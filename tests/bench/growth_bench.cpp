@@ -74,7 +74,8 @@ Figures rendered(const Family& family, double size) {
   return out;
 }
 
-/// Writes the package of the scene, its manifest and blobs, to the folder. Measures nothing.
+/// Writes the scene of this size to the folder as a package, the form in which workers get scenes:
+/// a manifest, and blobs (files of data that are named by their digests). Measures nothing.
 Figures packed(const Family& family, double size, const std::string& folder) {
   BlobMap blobs;
   GrownScene grown = family.scene(size);
@@ -201,8 +202,8 @@ Grown measure(const Family& family) {
   return out;
 }
 
-/// Returns the speed of all threads relative to that of one thread, from the minimum times of
-/// alternating rounds.
+/// Returns the speed of all threads relative to that of one thread. The two take turns, and the
+/// minimum time of each counts.
 double thread_speedup() {
   const Family cornell = families(true).back();  // "depth": a Cornell box
   GrownScene grown = cornell.scene(8);           // paths of at most 8 scatterings

@@ -44,8 +44,8 @@ GrownScene hills(double triangles) {
   return grown(std::move(maker));
 }
 
-/// Returns the radius of each of `count` spheres, or instances of one mesh, in a cube. With this
-/// radius the cube is filled with the same density at every count.
+/// Returns a radius for `count` spheres (or instances of one mesh) in a cube. With this radius they
+/// fill the cube with the same density at every count.
 double radius_of(double count) { return 0.6 / std::cbrt(count); }
 
 GrownScene spheres(double count) {
@@ -120,6 +120,7 @@ GrownScene deep(double depth) {
   return grown(test::cornell_box(), static_cast<std::uint32_t>(depth));
 }
 
+/// Returns base^first, …, base^last.
 std::vector<double> powers(double base, int first, int last) {
   std::vector<double> out;
   for (int power = first; power <= last; ++power) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Scenes for growth_bench: in each family one quantity grows, such as the number of triangles.
+// Scenes for growth_bench, which measures how time and memory grow with the size of a scene. In
+// each family of scenes one quantity grows, such as the number of triangles.
 
 #include <cstdint>
 #include <functional>
@@ -20,9 +21,9 @@ struct GrownScene {
 
 /// A quantity that grows while everything else stays the same.
 struct Family {
-  std::string name;           ///< "triangles"
-  std::vector<double> sizes;  ///< values of the quantity, ascending
-  std::function<GrownScene(double size)> scene;
+  std::string name;                              ///< "triangles"
+  std::vector<double> sizes;                     ///< values of the quantity, ascending
+  std::function<GrownScene(double size)> scene;  ///< makes the scene of a size
 };
 
 /// Returns all families. If `quick`, the largest sizes are omitted.

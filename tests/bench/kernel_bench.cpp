@@ -1,6 +1,6 @@
-// kernel_bench [MESH...] measures how many rays per second are traced by Accel, the renderer's own
-// BVHs, and by Embree in two modes: robust (no gaps between triangles) and fast. All get the same
-// rays (README.md). A mesh is a name (tests/bench/kernel_meshes.h) or a file.
+// kernel_bench [MESH...] measures how many rays per second are traced by the renderer's own BVHs
+// (the class Accel) and by Embree. Embree runs in two modes: robust (no gaps between triangles) and
+// fast. All get the same rays (README.md). MESH is a name (tests/bench/kernel_meshes.h) or a file.
 
 #include <algorithm>
 #include <chrono>
@@ -23,7 +23,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Bandsaw or a mode of Embree, with one of the two queries.
+/// Bandsaw or a mode of Embree, with one of two queries: the closest hit, or whether there is a
+/// hit.
 struct Kernel {
   std::string name;
   /// Traces the rays from the first pointer up to the second, which is excluded, and returns the

@@ -12,6 +12,7 @@
 namespace bandsaw::bench {
 namespace {
 
+/// Returns all triangles of a file that Assimp reads; empty if Assimp cannot read the file.
 Mesh from_file(const std::string& path) {
   Assimp::Importer importer;
   const aiScene* scene =

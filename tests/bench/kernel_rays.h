@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets of rays for kernel_bench, as a renderer traces them. Their origins and directions are
-// floats, so that every kernel traces the same rays.
+// Sets of rays for kernel_bench, as a renderer traces them. Embree reads floats, so the origins and
+// directions are rounded to floats. Then every kernel traces the same rays.
 
 #include <vector>
 

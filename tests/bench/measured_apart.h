@@ -1,6 +1,7 @@
 #pragma once
 
-// For growth_bench: does work in a child process, whose peak memory is that of this work alone.
+// For growth_bench, which measures how time and memory grow with a scene: does work in a child
+// process, so that the peak memory does not include other work.
 
 #include <functional>
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Compares the efficiency of Bandsaw with that of Cycles in one run. Both render the same scenes in turns with two seeds.
-# relMSE: half of the relative squared difference of the two images of a renderer, so no reference is needed.
+# relMSE: the error of one image, which is half of the relative squared difference of a renderer's two images. No
+# reference is needed.
 # Efficiency: 1 / (relMSE x CPU seconds / 2). Half of the CPU seconds is the wall clock time of two
 # threads. Without blender on PATH (Debian's package), only Bandsaw is measured.
 # Usage: tests/bench/peers.sh PATH-TO-BANDSAW [SAMPLES [SCENE.textproto...]]   (default: 64 samples of Cornell and Weekend)
@@ -15,9 +16,10 @@ scenes=("$@")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
+# number FIELD prints the number that the JSON on standard input has in this field.
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 
-# Each function prints CPU seconds and writes $image.
+# Each function renders $scene with the seed $1, writes $image and prints the CPU seconds.
 by_bandsaw() {
   image=$folder/bandsaw-$1.pfm
   "$bandsaw" render "$scene" --width "$width" --samples "$samples" --seed "$1" --json -o "$image" | tail -1 | number cpu_s
@@ -30,7 +32,7 @@ by_cycles() {
 
 renderers=(bandsaw)
 if command -v blender >/dev/null; then renderers+=(cycles); fi
-echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | efficiency of Bandsaw over that of the row |"
+echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | Bandsaw's efficiency relative to this renderer |"
 echo "| --- | --- | --- | --- | --- | --- |"
 for scene in "${scenes[@]}"; do
   width=400

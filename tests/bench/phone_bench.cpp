@@ -113,6 +113,7 @@ class PhoneRun {
                                                             " has no worker; start one first"));
   }
 
+  /// An imported image and its times so far.
   struct Prepared {
     ImportedPackage package;
     SceneDescription scene;
@@ -120,6 +121,7 @@ class PhoneRun {
     PhoneImage times;
   };
 
+  /// Imports the images of the table that are in `names`.
   absl::StatusOr<std::vector<Prepared>> prepared(const PhoneTable& table,
                                                  const std::set<std::string>& names) {
     std::vector<Prepared> out;
@@ -141,6 +143,7 @@ class PhoneRun {
     return out;
   }
 
+  /// Renders the image once on each machine, and adds the times to `image.times`.
   absl::Status time_once(Prepared& image) {
     RETURN_IF_ERROR(here(image, one_, image.times.one));
     RETURN_IF_ERROR(here(image, all_, image.times.all));
@@ -161,8 +164,9 @@ class PhoneRun {
     return absl::OkStatus();
   }
 
-  /// Renders once on the farm. The time is that from the first lease until the image is complete,
-  /// as shown on the dashboard. The first run includes a worker's loading of the scene.
+  /// Renders once on the farm. The time begins when a worker gets the first rows, and ends when the
+  /// image is complete; the dashboard shows the same time. In the first run, workers also load the
+  /// scene.
   absl::Status there(Prepared& image) {
     ProgressDisplay display(process_.console, {.quiet = true});
     ASSIGN_OR_RETURN(

@@ -1,6 +1,6 @@
 // The tables of the phone study, another author's study of ray tracing on phones (phone_study.h).
-// Each row has the name of an image and its label. The x in a plot follows if the row is plotted,
-// and then the time in milliseconds if the study states it.
+// Each row has the name of an image and its label. A plotted row also has its x in the plot. If the
+// study states the image's time, the time in milliseconds is last.
 
 #include "tests/bench/phone_study.h"
 

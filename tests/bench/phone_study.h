@@ -2,8 +2,8 @@
 
 // Benchmark with the 23 images of another author's study of ray tracing on phones
 // (renderlib/gallery/study), timed ten times each, as in the study. Few results of the study are
-// known: its times by number of objects ranged from 290 to 3,289 ms, and phones took 35 to 150
-// times as long as a laptop.
+// known: images of 1 to 24 objects took 290 to 3,289 ms, and phones took 35 to 150 times as long as
+// a laptop.
 
 #include <optional>
 #include <string>
@@ -26,6 +26,7 @@ struct PhoneTable {
   const char* what;  ///< quantity that varies between the rows, such as "objects"
   absl::Span<const PhoneRow> rows;
 };
+/// Returns the tables of the study with the rows of all 23 images.
 absl::Span<const PhoneTable> phone_tables();
 
 /// Milliseconds of wall-clock time, one value per run.
@@ -35,6 +36,7 @@ struct PhoneTimes {
   std::vector<double> render;  ///< one sample per pixel
 };
 
+/// The measurements of one image.
 struct PhoneImage {
   std::string name;  ///< as PhoneRow::image
   double rays = 0;   ///< rays of one render
@@ -43,6 +45,7 @@ struct PhoneImage {
   PhoneTimes farm;   ///< empty: no farm
 };
 
+/// All measurements of one run of phone_bench.
 struct PhoneStudy {
   std::string machine;  ///< name of the processor
   int threads = 1;      ///< number of threads of PhoneImage::all

@@ -54,7 +54,8 @@ std::string table_text(const PhoneStudy& study, const PhoneTable& table) {
                                      "| --- | --- | --- | --- | --- | --- |\n", rows, "\n");
 }
 
-/// Sum of the median render times of all images.
+/// Sum of the median render times of all images. `where` selects the machine: &PhoneImage::one, all
+/// or farm.
 double sum(const PhoneStudy& study, PhoneTimes PhoneImage::*where) {
   double all = 0;
   for (const PhoneImage& image : study.images) {
@@ -70,7 +71,7 @@ std::string machines_text(const PhoneStudy& study) {
   };
   std::string out =
       absl::StrCat("### Machine\n\n| machine | ", study.images.size(),
-                   " images, ms | time over that of the first row |\n| --- | --- | --- |\n");
+                   " images, ms | time relative to the first row |\n| --- | --- | --- |\n");
   absl::StrAppend(
       &out, row(absl::StrCat(study.machine, ", 1 thread"), one),
       row(absl::StrCat("the same, ", threads_text(study.threads)), sum(study, &PhoneImage::all)));

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sends thousands of small jobs through one coordinator and one worker; measures the memory of both and the jobs per second.
 # Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000). A job takes about 0.1 s on two cores.
-# KEPT: the number of finished jobs that the coordinator keeps (--keep-jobs). Until it is reached, its memory grows with each job.
+# KEPT: the number of finished jobs that the coordinator keeps (--keep-jobs). Until it keeps so many, its memory grows with each job.
 # Prints a line after each tenth of the jobs: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder, jobs a
 # second. The last line says by how much the memory of both processes has grown during the second half of the jobs.
 set -euo pipefail
@@ -24,7 +24,7 @@ echo "| --- | --- | --- | --- | --- |"
 step=$(((jobs + 9) / 10))
 for ((done = 0; done < jobs; done += step)); do
   began=$(date +%s.%N)
-  for lane in 0 1 2 3; do
+  for lane in 0 1 2 3; do  # four jobs at a time
     for ((i = done + lane; i < done + step && i < jobs; i += 4)); do submit "$i" "$lane"; done &
     lanes[lane]=$!
   done

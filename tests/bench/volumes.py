@@ -4,8 +4,8 @@
 
 Writes volumes.vdb (256^3 voxels of smoke, flames and temperatures) and three scenes: smoke.textproto,
 fire.textproto, and plain.textproto, homogeneous smoke in a ball for comparison. Prints for each grid
-the number of active voxels, the number of leaves, and the size of the sparse data, which is the size of
-the leaves' numbers in bytes.
+the number of active voxels, the number of leaves (blocks of 8^3 voxels), and the size of the numbers in
+the leaves in bytes.
 """
 
 import os
