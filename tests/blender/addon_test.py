@@ -125,6 +125,7 @@ class AddOn(unittest.TestCase):
         self.render()
         got = self.pixels()
         self.assertEqual(got.shape, (64, 96, 4))
+        # In the picture of the fake farm, red is x / width and green is y / height.
         y, x = np.mgrid[0:64, 0:96]
         self.assertLess(abs(got[:, :, 0] - x / 96).max(), 1e-6)
         self.assertLess(abs(got[:, :, 1] - y / 64).max(), 1e-6)
@@ -216,7 +217,7 @@ class AddOn(unittest.TestCase):
 
         with mock.patch.object(engine, "set_pixels", noting):
             self.render()
-        self.assertEqual(self.pixels()[5, 7].tolist(), [0.75, 0.5, 0.25, 1])
+        self.assertEqual(self.pixels()[5, 7].tolist(), [0.75, 0.5, 0.25, 1])  # the fake farm's denoised picture has one colour
         noisy, has_pass = shown["Noisy Image"]
         self.assertTrue(has_pass)
         self.assertLess(abs(noisy[::-1, :, 0] - np.arange(96) / 96).max(), 1e-6)
@@ -430,6 +431,7 @@ class AddOn(unittest.TestCase):
         image = scenes.picture("halves", np.concatenate([np.tile([1.0, 0, 0], (8, 4, 1)), np.tile([0, 1.0, 0], (8, 4, 1))], axis=1))
         for name, column in (("second", 0), ("third", 1), ("nowhere", 0)):
             def nodes(tree, shader):
+                # Makes three nodes "UV Map". The texture uses the last one, which names `name`.
                 for number, uv_map in enumerate(("second", "third", name)):
                     uv = tree.nodes.new("ShaderNodeUVMap")
                     uv.uv_map = uv_map

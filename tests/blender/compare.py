@@ -20,6 +20,7 @@ BANDSAW_SAMPLES = 256
 
 
 def set_cycles(made):
+    """Selects Cycles for the scene `made`, without the settings that change the expected image."""
     made.render.engine = "CYCLES"
     cycles = made.cycles
     cycles.device, cycles.samples = "CPU", CYCLES_SAMPLES

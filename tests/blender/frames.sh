@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders a walk of 48 frames with motion blur (walk.py) on three workers. One worker is killed, and the coordinator is killed once.
+# Renders a walk of 48 frames with motion blur (walk.py) on three workers. One worker is killed; the coordinator is killed and restarted.
 # Checks that each frame has the bytes of `bandsaw render --frame N`, that none is rendered twice, and that the video has 48 frames.
 # run.sh calls this script and then compares the positions of the vertices with Blender's.
 # Usage: frames.sh BUILD-FOLDER WORK-FOLDER. Appends the ids of the processes that the caller must end to WORK-FOLDER/pids.
@@ -21,6 +21,7 @@ serve() {
   done
 }
 frames_written() { find "$work/frames" -name 'w.*.pfm' | wc -l; }
+# wait_for_frames NUMBER waits until this number of frames is written.
 wait_for_frames() {
   until [ "$(frames_written)" -ge "$1" ]; do
     kill -0 $submitter || { cat "$work/submit.log"; exit 1; }

@@ -7,7 +7,7 @@ bandsaw=$1 folder=$2 failed=0
 allowed() {
   case $1 in
     principled) echo 3 ;;  # Principled of Blender 3.4 adds its reflection to the diffuse part
-    normals) echo 4 ;;     # Blender 4's Bump Map Correction
+    normals) echo 4 ;;     # Bump Map Correction of Blender 4 darkens bent normals
     *) echo 2 ;;
   esac
 }

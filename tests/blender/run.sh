@@ -27,13 +27,14 @@ export BLENDER_USER_SCRIPTS=$work/scripts PYTHONDONTWRITEBYTECODE=1 HOME=$work
 mkdir -p "$work/scripts" "$work/out"
 "$here/../../deploy/blender/make.sh" "$work/addon.zip"
 
-# Runs Blender on a Python file; its output is shown if it fails.
+# in_blender SCRIPT [ARGUMENT...] runs a Python file in Blender. If the file fails, the output of Blender is shown.
 in_blender() {
   local script=$1
   shift
   blender -b --factory-startup --python-exit-code 1 --python "$script" -- "$@" >"$work/log" 2>&1 || { cat "$work/log"; return 1; }
 }
 
+# Starts a coordinator and a worker, and sets BANDSAW_FARM to the join string of users.
 start_farm() {
   "$build/bin/bandsaw" serve --data "$work/farm" --listen 127.0.0.1:0 --web 127.0.0.1:0 >"$work/serve.log" 2>&1 &
   echo $! >>"$work/pids"
@@ -67,7 +68,7 @@ case $part in
     ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
     grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
     [ ! -e "$work/out/bad.pfm" ]
-    # The first one of several view layers is rendered. It has the ball in the middle of the image.
+    # Of several view layers the first is rendered. Here the first layer has a green ball in the middle of the image.
     in_blender "$here/save.py" "$work/out/layers.blend" layers
     "$build/bin/bandsaw" render "$work/out/layers.blend" --samples 4 --report none -o "$work/out/layers.pfm" 2>"$work/error"
     grep -q 'only the view layer "ViewLayer" is rendered' "$work/error" || { cat "$work/error"; exit 1; }

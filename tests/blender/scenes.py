@@ -9,8 +9,8 @@ from mathutils import Vector
 SCENES = {}
 
 
-# Decorator that registers a function that builds a scene. judge.sh limits how much the scene's
-# image by the add-on may differ from that by Cycles.
+# Decorator that registers a function that builds a scene. Cycles and the add-on render the scene,
+# and judge.sh limits the difference of the two images.
 def scene(function):
     SCENES[function.__name__] = function
     return function
@@ -105,6 +105,7 @@ def cube(place, size, made):
 
 
 def light(kind, place, energy, target=(0, 0, 0), **fields):
+    """Adds a light at `place` that shines towards `target`. `fields`: further properties of Blender's light."""
     thing = link(bpy.data.objects.new(kind.lower(), bpy.data.lights.new(kind.lower(), kind)))
     thing.location = place
     thing.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()
@@ -136,6 +137,7 @@ def picture(name, pixels, color=True, is_float=False):
 
 
 def stripes():
+    """Returns the pixels of a picture of four stripes, for picture()."""
     y, x = np.mgrid[0:64, 0:64] / 64
     return np.stack([0.2 + 0.6 * (np.floor(x * 4) % 2), 0.3 + 0.4 * y, 0.7 - 0.5 * x], axis=2)
 
@@ -429,6 +431,7 @@ def deforming():
 
 
 def curves_of(thing):
+    """Returns the animation curves of an object."""
     return thing.animation_data.action.fcurves
 
 

@@ -3,7 +3,8 @@ vertices_check.py compares them with the positions that bandsaw-import computes.
 
     blender -b --factory-startup --python vertices.py -- FILE.glb OUT.npy FIRST LAST
 
-Writes float32 (frames, vertices, 3) with y up, in the file's order of vertices."""
+OUT.npy is an array of float32 with the shape (frames, vertices, 3). The y axis is up. The vertices are
+in the order of FILE.glb."""
 
 import sys
 

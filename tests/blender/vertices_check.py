@@ -3,8 +3,8 @@ a model at each frame.
 
     vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER
 
-FIRST: number of the first frame. The scene package of each frame is written to FOLDER. In a
-package, the file of positions is recognised by its size."""
+FIRST: number of the first frame. bandsaw-import writes the scene of each frame to FOLDER as a
+package, a folder of files. In a package, the file of positions is recognised by its size."""
 
 import os
 import subprocess

@@ -4,8 +4,9 @@
 
 A leg of 24 rings is bound to two bones, hip and knee, which turn; the hip moves forwards. Each of
 the 48 frames (24 a second) has a key of its own, so two programs that read the file at a frame get
-the same pose and need not interpolate in the same way. There are no normals. So the positions are
-the only array of the package with 12 bytes for each vertex, and a test can find them by that size.
+the same pose and need not interpolate in the same way. bandsaw-import converts the file to a package
+of arrays. There are no normals, so the positions are the only array of the package with 12 bytes for
+each vertex, and a test can find them by that size.
 """
 
 import json

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests the add-on in a window of Blender under Xvfb. F12 must start a render at a coordinator that takes two minutes for it, the picture
-# must grow in the window, and Esc must cancel the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
+# Tests the add-on in a window of Blender under Xvfb. F12 must start a render at a fake coordinator (window_test.py), which
+# takes two minutes for it. The picture must grow in the window, and Esc must cancel the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
 set -euo pipefail
 work=$1 shots=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -15,16 +15,16 @@ blender --factory-startup --window-geometry 0 0 1280 800 --no-window-focus --pyt
 blender=$!
 echo $blender >>"$work/pids"
 
-# Waits until the script in Blender has written a word.
+# state WORD waits until window_test.py, which runs in Blender, has written this word.
 state() {
   until grep -q "^$1" "$work/state" 2>/dev/null; do
     kill -0 $blender 2>/dev/null || { cat "$work/log" "$work/state"; exit 1; }
     sleep 0.1
   done
 }
-# Writes what is in the middle of the window, where Blender shows the picture.
+# middle SCREENSHOT FILE writes the middle of the screenshot, where Blender shows the picture, to a file.
 middle() { convert "$1" -crop 500x300+390+266 +repage "$2"; }
-# The picture of the fake farm (window_test.py) is coloured; Blender's background is grey.
+# is_coloured FILE: the picture of the fake coordinator is coloured, and Blender's background is grey.
 is_coloured() { awk "BEGIN { exit !($(convert "$1" -colorspace HSL -channel G -separate -format '%[fx:mean]' info:) > 0.2) }"; }
 
 state ready

@@ -1,4 +1,5 @@
-// Renders a ball under a sky in a program that uses the installed library: find_package(bandsaw).
+// An example of a program that uses the installed library. Renders a ball under a sky and writes
+// ball.pfm. CMakeLists.txt finds the library with find_package(bandsaw).
 #include <renderlib/image/write_image.h>
 #include <renderlib/render/render_image.h>
 
