@@ -37,8 +37,8 @@ class Administration : public testing::Test {
   FarmProcesses farm_;
 };
 
-// Scripts, such as that in the README, wait for the users' file and then start a worker with the
-// workers' file. So the workers' file must be there first.
+// Scripts, such as the script in the README, wait for the users' file and then start a worker with
+// the workers' file. So the workers' file must be there first.
 TEST_F(Administration, TheFileForUsersIsWrittenLast) {
   EXPECT_LE(std::filesystem::last_write_time(farm_.join_file()),
             std::filesystem::last_write_time(farm_.farm_file()));
@@ -128,6 +128,7 @@ TEST_F(Administration, AJoinFileThatWasRemovedIsWrittenWithTheNewSecret) {
   std::filesystem::remove(farm_.join_file());
   EXPECT_EQ(here({"secret", "rotate", "worker"}).code, 0);
   farm_.add_worker("new", 1);
+  // If no coordinator runs, the next coordinator writes the file when it starts.
   farm_.coordinator().signal(SIGTERM);
   farm_.coordinator().wait();
   std::filesystem::remove(farm_.join_file());

@@ -33,6 +33,7 @@ class InviteArchitectures : public ::testing::Test {
   void dismiss(const std::string& host) {
     EXPECT_EQ(run({installed_.bandsaw(), "dismiss", host}, machines_.environment()).code, 0);
   }
+  /// Whether no file was sent to the host.
   bool got_nothing(const std::string& host) {
     return std::filesystem::is_empty(machines_.home(host));
   }
@@ -87,9 +88,9 @@ TEST_F(InviteArchitectures, AFileThatIsNotTheProgramIsNotSent) {
   EXPECT_TRUE(got_nothing("phone"));
 }
 
-// On such a system uname prints the kernel's architecture, but the loader of 64-bit programs is
-// missing, so the worker cannot start. The error must name the kind of system that the worker
-// needs. A script whose interpreter does not exist takes the place of the worker.
+// On a 32-bit system with a 64-bit kernel, uname prints the kernel's architecture, but the loader
+// of 64-bit programs is missing. So the worker cannot start. The error must name the kind of system
+// that the worker needs. A script whose interpreter does not exist takes the place of the worker.
 TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelIsReported) {
   installed_.put_aarch64_worker(worker_file(EM_AARCH64, fitting_mark()));
   machines_.replace("phone", "chmod",

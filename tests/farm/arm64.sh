@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that an ARM64 machine computes the same bits. Tests of the cross build run in an emulator. Then the worker of the cross build
+# Checks that an ARM64 machine computes the same bits as this one. Tests of the cross build run in an emulator. Then the worker of the cross build
 # renders on a farm, first alone and then beside a worker of this machine. The images are compared byte by byte with those of `bandsaw render` here.
 # Usage: arm64.sh BIN-FOLDER ARM64-BUILD      Exit 77: there is no emulator or no cross build (deploy/arm64.sh makes both).
 set -euo pipefail

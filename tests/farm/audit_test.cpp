@@ -1,6 +1,6 @@
 // A farm of real processes in which one machine sends wrong pixels (liar/main.cpp). Audits, which
-// render a band on a second machine and compare the two results, find this machine. Then it is
-// quarantined.
+// render a band on a second machine and compare the two results, find this machine. Then the
+// machine is quarantined: it gets no more bands until a user lifts the quarantine.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,7 @@ class AuditedFarm : public testing::Test {
     return run(farm_.command(std::move(arguments)));
   }
 
+  /// Renders an image on the farm and on this machine. The two files must have the same bytes.
   void expect_the_image_is_right() {
     const std::vector<std::string> settings = {"--width",   "64", "--height", "64",
                                                "--samples", "64", "-o"};

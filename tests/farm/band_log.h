@@ -17,6 +17,7 @@ struct LoggedBand {
   std::uint64_t first_sample = 0;
   std::uint64_t last_sample = 0;
 
+  /// Whether both bands have the same sample of any pixel.
   bool overlaps(const LoggedBand& other) const {
     return job == other.job && first_row < other.last_row && other.first_row < last_row &&
            first_sample < other.last_sample && other.first_sample < last_sample;

@@ -77,6 +77,7 @@ TEST_F(CleanImages, AreTheSameAfterTheCoordinatorWasKilled) {
   farm_.restart_coordinator();
   EXPECT_EQ(client.wait(), 0) << client.err() << farm_.coordinator_log();
   EXPECT_TRUE(file_bytes(farm_.path("there.png")) == expected);
+  // .raw.png: the image before it was cleaned.
   EXPECT_TRUE(file_bytes(farm_.path("there.raw.png")) == file_bytes(farm_.path("here.raw.png")));
 }
 

@@ -52,6 +52,7 @@ class Control : public testing::Test {
   FarmProcesses farm_;
 };
 
+// A leased job is one of which a worker has rows to render.
 TEST_F(Control, APausedJobIsNotLeasedAndContinuesToTheSameBytes) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);

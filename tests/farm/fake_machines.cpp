@@ -1,5 +1,5 @@
-// Scripts that stand in for `ssh` and `systemctl`: each simulated machine is a home folder, and its
-// commands run on this machine.
+// Scripts that stand in for `ssh` and `systemctl`. Each simulated machine is a home folder;
+// commands for it run on the machine of the test.
 
 #include "tests/farm/fake_machines.h"
 
@@ -28,8 +28,8 @@ exec env -i HOME="$MACHINES/homes/$host" PATH="$MACHINES/bin-$host:$MACHINES/bin
   XDG_RUNTIME_DIR=/nowhere sh -c "$*"
 )sh";
 
-// Stands in for systemctl --user: starts and stops the command of one unit file, and logs its
-// calls.
+// Stands in for systemctl --user: starts and stops the command of one unit file. Writes each call
+// of systemctl to the file `asked`.
 constexpr char kSystemctl[] = R"sh(
 echo "systemctl $*" >>"$HOME/asked"
 unit=$HOME/.config/systemd/user/bandsaw-worker.service

@@ -1,7 +1,7 @@
 #pragma once
 
-// Simulated machines behind an `ssh` that is a script: each is a home folder below a temporary
-// folder, and remote commands run locally.
+// Simulated machines for tests, with a script in the place of `ssh`. Each machine is a home folder
+// below a temporary folder, and its commands run on the machine of the test.
 
 #include <string>
 #include <vector>

@@ -26,9 +26,9 @@ inline void expect_success(const Finished& finished) {
 /// The processes of one farm. The destructor ends all of them.
 class FarmProcesses {
  public:
-  /// Starts `program`, the command bandsaw, as the coordinator with additional `options`. The
-  /// default options disable audits, which render some bands a second time, because tests count
-  /// rendered bands. If `hosts` is given, the coordinator runs on machine "coordinator" and each
+  /// Starts `program`, the command bandsaw, as the coordinator with additional `options`. Audits
+  /// render some bands a second time. Tests count rendered bands, so the default options disable
+  /// audits. If `hosts` is given, the coordinator runs on machine "coordinator" and each
   /// worker on the machine of its name; `hosts` MUST outlive this object. nullptr: all processes
   /// are on loopback.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
@@ -44,7 +44,7 @@ class FarmProcesses {
   std::vector<std::string> worker_names() const;
 
   Process& coordinator() { return *coordinator_; }
-  /// Returns the coordinator's log, including that of earlier processes.
+  /// Returns the log of the coordinator, from its first start through all restarts.
   std::string coordinator_log() const { return earlier_log_ + coordinator_->err(); }
   /// Restarts the coordinator with the same data folder and port.
   void restart_coordinator();

@@ -1,6 +1,6 @@
-// Scenes of pbrt and Mitsuba. The image of a farm that loses a worker has the same bytes as that of
-// `bandsaw render`. The scene file that `bandsaw import` writes also gives these bytes. The scenes
-// are defined here, and each has many features.
+// Tests scenes of pbrt and Mitsuba. If a farm loses a worker, its image has the same bytes as the
+// image of `bandsaw render`. The scene file that `bandsaw import` writes also gives these bytes.
+// The scenes are defined in this file, and each has many features.
 
 #include <gtest/gtest.h>
 
@@ -140,6 +140,8 @@ class ForeignScenes : public testing::Test {
     EXPECT_EQ(std::fwrite(text.data(), 1, text.size(), file), text.size());
     EXPECT_EQ(std::fclose(file), 0);
   }
+  /// Renders the scene on three workers, one of which is killed. The image must have the bytes of
+  /// `bandsaw render`, and no stored band may be rendered again.
   void expect_the_same_bytes_of(const std::string& scene) {
     Survival job(farm_, farm_.path(scene));
     for (const char* name : {"victim", "second", "third"}) {

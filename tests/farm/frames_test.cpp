@@ -142,6 +142,7 @@ TEST_F(Frames, HaveTheBytesOfRenderThoughAWorkerAndTheCoordinatorAreKilled) {
   }
   const Finished listed = run(farm_.command({"jobs"}));
   EXPECT_THAT(listed.out, HasSubstr("12 of 12 frames"));
+  // The list has a header and one line for all frames.
   EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 2) << listed.out;
   EXPECT_THAT(run(farm_.command({"missing", "1"})).out, HasSubstr("no frame is missing"));
 }
@@ -166,7 +167,7 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   for (const int frame : {1, 3, 20}) {
     expect_bytes_of_render(frame, {"--fixed-seed"});
   }
-  EXPECT_EQ(jobs_of_frames().size(), 18u);
+  EXPECT_EQ(jobs_of_frames().size(), 18u);  // the frames 1, 3 and 5 to 20
 }
 
 TEST_F(Frames, FramesWithoutAnOutputNameDoNotReplaceFilesOfTheModel) {
@@ -282,6 +283,7 @@ TEST_F(Frames, AreDenoisedAsByRender) {
   const Finished listed = run(farm_.command({"jobs"}));
   EXPECT_THAT(listed.out, HasSubstr("4 of 4 frames"));
   EXPECT_THAT(listed.out, HasSubstr("8 guides of clean images"));
+  // The list has a header, one line for all frames, and one line for their guides.
   EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 3) << listed.out;
 }
 

@@ -167,8 +167,8 @@ TEST(FullDisk, AFullDiskBehindStandardOutputIsAnError) {
   }
 }
 
-// `render` ignores SIGPIPE. So it writes the image although `true`, which reads its standard
-// output, has ended.
+// The standard output of `render` is a pipe to `true`, which ends at once. `render` ignores
+// SIGPIPE, so it writes the image nevertheless.
 TEST(FullDisk, AReaderThatHasEndedIsNoError) {
   const TempDir folder;
   const Finished done =

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the scenes of both folders. They are read from the gallery in the build folder, because
-// the build generates maps there that are not stored in the repository.
+// Returns the scene files of both folders in the build folder's gallery. Only this gallery has the
+// maps that the build generates.
 std::vector<std::string> scenes_of_folders() {
   std::vector<std::string> scenes;
   for (const char* part : {"study", "books"}) {

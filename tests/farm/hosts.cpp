@@ -108,7 +108,7 @@ void Hosts::plug(const std::string& name) const {
 }
 
 void Hosts::deafen(const std::string& from, const std::string& to) const {
-  // A neighbour entry with an unused address: frames are sent, but no machine receives them.
+  // `from` sends its packets for `to` to a hardware address that no machine has.
   BANDSAW_CHECK(ip(from, {"neighbour", "replace", address(to), "lladdr", "02:00:00:00:00:99", "dev",
                           "cable", "nud", "permanent"}),
                 from.c_str());

@@ -38,8 +38,8 @@ class Hosts {
   Hosts& operator=(const Hosts&) = delete;
 
   std::string address(const std::string& name) const;  ///< IPv4, without a port
-  /// Returns the command line that runs `argv` on machine `name`. The process id is that of the
-  /// command itself.
+  /// Returns the command line that runs `argv` on machine `name`. The process that it starts
+  /// becomes `argv`, so signals to this process reach `argv`.
   std::vector<std::string> on(const std::string& name, std::vector<std::string> argv) const;
   /// Moves the calling thread to machine `name` while the returned object exists.
   std::unique_ptr<Visit> visit(const std::string& name) const;

@@ -26,6 +26,7 @@ class Cables : public testing::Test {
     farm_->add_worker("laptop", 1);
   }
 
+  /// Waits until the coordinator's log says that the worker's connection has ended.
   void wait_until_lost(const std::string& worker) {
     const std::regex lost("worker=" + worker + " .*(closed|disconnected)");
     ASSERT_TRUE(farm_->coordinator().wait_until([&](const std::string&, const std::string& log) {

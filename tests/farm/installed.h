@@ -9,8 +9,8 @@
 
 namespace bandsaw::test {
 
-/// The command and its worker, copied into a folder of the test, so that the test determines which
-/// programs of other architectures are installed with them.
+/// The command and its worker, copied into a folder of the test. So only those programs of other
+/// architectures are installed that the test adds.
 class Installed {
  public:
   Installed();
@@ -18,6 +18,7 @@ class Installed {
   /// Path at which the program for aarch64 machines is expected. Its folder exists. The file exists
   /// only after put_aarch64_worker().
   std::string aarch64_worker() const { return folder_ / "lib/bandsaw/bandsaw-worker-aarch64"; }
+  /// Writes `bytes` to the file aarch64_worker().
   void put_aarch64_worker(const std::string& bytes) const;
 
  private:

@@ -21,8 +21,9 @@ constexpr char kSshd[] = "/usr/sbin/sshd";
 
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
-// Makes a program `ssh` with its own configuration. The account that it logs in to has a folder of
-// the test as HOME. Returns the PATH=... on which this `ssh` is found.
+// Makes a program `ssh` with a configuration of the test. HOME of the account to which `ssh` logs
+// in is a folder of the test. Returns the environment variable PATH=… with which this `ssh` is
+// found.
 std::string make_account(const TempDir& folder) {
   for (const char* key : {"key", "host"}) {
     run({"/usr/bin/ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key});
@@ -62,6 +63,7 @@ TEST(InviteSsh, InviteAndDismissWorkThroughARealServer) {
   const std::string path = make_account(folder);
   const std::vector<std::string> invite = {BANDSAW_BIN, "invite", "--join", farm.join_file(),
                                            "desk"};
+  // The key of the host is not known yet.
   const Finished stranger = run(invite, {path});
   EXPECT_EQ(stranger.code, 1);
   EXPECT_THAT(stranger.err, HasSubstr("connect once by hand: ssh desk"));

@@ -24,7 +24,8 @@ class Invite : public ::testing::Test {
     arguments.insert(arguments.begin(), {BANDSAW_BIN, "dismiss"});
     return run(arguments, machines_.environment());
   }
-  /// Returns true, and fails the test, if the host's home folder contains a file of the worker.
+  /// Returns true, and fails the test, if the host's home folder contains a file of the worker. The
+  /// files `asked` and `service` belong to the simulated systemctl.
   bool has_files(const std::string& host) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(machines_.home(host))) {
       if (!entry.is_directory() && entry.path().filename() != "asked" &&

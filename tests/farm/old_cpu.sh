@@ -24,7 +24,7 @@ grep -q "must be plain, is 'avx2'" refused || fail "--kernel avx2 was refused fo
 "${old[@]}" "$bin/bandsaw-import" > usage && fail "bandsaw-import accepted no arguments"
 grep -q "usage: bandsaw-import" usage || fail "bandsaw-import does not start: $(cat usage)"
 
-# A farm of one worker, on the emulated processor; this machine coordinates and submits.
+# The farm has one worker, which runs on the emulated processor. This machine coordinates and submits.
 serve_here serve.log --web none
 join_here old worker.log "${old[@]}" "$bin/bandsaw-worker" --threads 2
 bandsaw submit "$gallery/materials.textproto" --farm "$data/farm" "${how[@]}" -o farm.pfm

@@ -63,7 +63,7 @@ TEST(Paste, TheLineStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   const std::string other_digest =
       std::regex_replace(line, std::regex("d=[0-9a-f]{64}"), "d=" + std::string(64, '0'));
   Process damaged = paste(farm, "coordinator", farm.path("two"), other_digest);
-  EXPECT_EQ(damaged.wait(), 1);
+  EXPECT_EQ(damaged.wait(), 1);  // sha256sum: the program has another digest
   EXPECT_NE(damaged.out().find("FAILED"), std::string::npos) << damaged.out();
 }
 

@@ -27,6 +27,7 @@ const Struct& section(const Struct& json, const std::string& name) {
   return json.fields().at(name).struct_value();
 }
 
+/// Returns the number `field` of the section `of`.
 double number(const Struct& json, const std::string& of, const std::string& field) {
   return section(json, of).fields().at(field).number_value();
 }
@@ -130,6 +131,7 @@ TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
   }
 }
 
+// The report of an image that is stitched from two parts equals the report of the whole image.
 TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
   const TempDir folder;
   const auto path = [&](const char* name) { return folder / name; };
@@ -151,6 +153,7 @@ TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
                                                                    section(stitched, same)))
         << same;
   }
+  // In the report of a part the error is unknown.
   EXPECT_TRUE(report(path("top.json")).fields().at("error").has_null_value());
 }
 

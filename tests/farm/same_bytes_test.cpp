@@ -84,8 +84,9 @@ TEST_F(SameBytes, ByEachKernel) {
   }
 }
 
-// The number of samples of each tile is planned from the errors of the first samples. The plan is
-// equal on every farm and after a restart, and so is the layer "samples" that shows it.
+// The number of samples of each half tile (half of the pixels of a square of 16 x 16) is planned
+// from the errors of the first samples. The layer "samples" shows the plan. Both must be the same
+// on every farm and after a restart.
 TEST_F(SameBytes, WithAdaptiveSampling) {
   const auto adaptive = [&](const std::string& command, const std::string& file) {
     return std::vector<std::string>{command,    std::string(BANDSAW_GALLERY) + "/spheres.textproto",
@@ -104,6 +105,7 @@ TEST_F(SameBytes, WithAdaptiveSampling) {
   farm_.add_worker("two", 2);
   Process client = Process::start(farm_.command(adaptive("submit", "two.exr")));
   ASSERT_TRUE(farm_.coordinator().wait_until([](const std::string&, const std::string& log) {
+    // The log names each job's plan once. The second plan is that of the job of two.exr.
     constexpr char kPlanned[] = "more samples where there is more noise";
     return log.find(kPlanned) != log.rfind(kPlanned);
   })) << farm_.coordinator_log();

@@ -35,9 +35,9 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_NE(done.out.find("| spheres | independent numbers | 16 |"), std::string::npos);
   const std::string csv = file_bytes(folder_ / "s.csv");
   // There is one header. Each of the two scenes has three rows (1, 4 and 16 samples) for each of
-  // four methods and for adaptive sampling. It also has four rows of a method that stops each pixel
-  // at a tolerance of its error. The room with the uplight uses photon maps of indirect light, so
-  // it has three more rows without photon maps.
+  // four methods and for adaptive sampling. Each scene also has four rows of a method that stops
+  // each pixel at a tolerance of the pixel's error. The room with the uplight uses photon maps of
+  // indirect light, so this room has three more rows without photon maps.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (5 * 3 + 4) + 3);
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }

@@ -30,8 +30,8 @@ class Survival {
   void expect_the_same_bytes(Process& client);
 
   /// Counts bands that one worker had stored and another rendered as well, and bands that one
-  /// worker rendered twice. Rows that the coordinator gave to two workers on purpose (backup tasks,
-  /// and rows that it moved from a slow worker to an idle one) do not count. Bands that the worker
+  /// worker rendered twice. Rows that the coordinator gave to two workers on purpose do not count:
+  /// it copies or moves rows of a slow worker to an idle worker. Bands that the worker
   /// `cut_off` rendered in vain do not count either. That worker could not know what the other
   /// workers did meanwhile, or it was killed before it could send its bands.
   int rendered_again(const std::string& cut_off = "");
@@ -40,6 +40,7 @@ class Survival {
   void expect_nothing_rendered_again(const std::string& cut_off = "");
 
  private:
+  /// Whether the coordinator gave the rows that both bands contain to two workers on purpose.
   bool shared(const LoggedBand& one, const LoggedBand& other) const;
   FarmProcesses& farm_;
   std::string scene_;

@@ -36,6 +36,7 @@ TEST_F(Survive, AFrozenWorker) {
   farm_.worker("victim").signal(SIGSTOP);
   job_.expect_the_same_bytes(client);
   job_.expect_nothing_rendered_again("victim");
+  // The coordinator has given the frozen worker up, so the worker must join a second time.
   farm_.worker("victim").signal(SIGCONT);
   job_.wait_until_joined("victim", 2);
 }

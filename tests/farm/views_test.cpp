@@ -1,5 +1,5 @@
-// Views of an image in progress: in the terminal, in the image viewer tev, and through the
-// coordinator's call for previews.
+// Tests the three ways to see an image while it is rendered: in the terminal, in the image viewer
+// tev, and by the coordinator's call for previews.
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -163,7 +163,7 @@ TEST(Views, TheTerminalShowsTheImage) {
                                     "--preview", "-o", farm.path("a.png")});
   const Finished shown = on_terminal(submit, "COLUMNS=80");
   EXPECT_EQ(shown.code, 0) << shown.out;
-  EXPECT_THAT(shown.out, HasSubstr("\x1b[38;2;"));
+  EXPECT_THAT(shown.out, HasSubstr("\x1b[38;2;"));  // the escape code of a 24-bit colour
   EXPECT_THAT(shown.out, HasSubstr("▀"));
   const Finished plain = on_terminal(submit, "NO_COLOR=1");
   EXPECT_EQ(plain.code, 0) << plain.out;

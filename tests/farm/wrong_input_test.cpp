@@ -33,6 +33,7 @@ void expect_error(const Finished& finished, int code, const std::vector<std::str
   }
 }
 
+/// Runs `bandsaw render` with these arguments for a small image.
 Finished render(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {BANDSAW_BIN, "render"});
   arguments.insert(arguments.end(), {"--width", "16", "--samples", "1", "--quiet"});
@@ -41,6 +42,7 @@ Finished render(std::vector<std::string> arguments) {
 
 class WrongInput : public testing::Test {
  protected:
+  /// Writes a scene file with a camera in line 1 and the text `more` from line 2. Returns its path.
   std::string scene_with(const std::string& more) {
     const std::string path = folder_ / "scene.textproto";
     write_input(path, "camera { look_at: [0, 0, -1] }\n" + more);

@@ -1,6 +1,6 @@
 // A worker for the tests of audits. It behaves as if its memory were defective: it renders
-// correctly, and its canary (the hash of a small image, compared when it joins) is right, but it
-// sends wrong pixels.
+// correctly, but it sends wrong pixels. The coordinator lets it join, because its canary (the hash
+// of a small test image) is right.
 
 #include "worker/command.h"
 
@@ -8,7 +8,8 @@ namespace {
 
 using bandsaw::worker::CoordinatorApi;
 
-/// Changes one sum of every band that is sent.
+/// Adds 1 to one number of every band that is sent. The numbers of a band are the sums of its
+/// pixels' samples.
 class WrongPixels final : public CoordinatorApi {
  public:
   explicit WrongPixels(CoordinatorApi& calls) : calls_(calls) {}
