@@ -20,6 +20,7 @@ using namespace bandsaw::coordinator;
 
 bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
+/// Sends the chunks of bands to a BandIntake, the class with which the coordinator receives them.
 class Sender {
  public:
   /// Sends the next message. `number` selects lengths and places. The bits of `what` select the

@@ -1,9 +1,9 @@
 #pragma once
 
 // A fuzz target is one .cpp file that defines run(), which gives any bytes to one reader of
-// Bandsaw. The reader must take them without a crash or a leak, and what it accepts must read back
-// unchanged after it is written. libFuzzer calls run() through libfuzzer.cpp, and CTest calls it
-// with the stored inputs (the corpus) through replay.cpp.
+// Bandsaw. The reader must take the bytes without a crash or a leak. Many targets also write what
+// the reader accepts, and then read it again; it must be unchanged. libFuzzer calls run() through
+// libfuzzer.cpp, and CTest calls it with the stored inputs (the corpus) through replay.cpp.
 
 #include <algorithm>
 #include <cstddef>
@@ -18,7 +18,8 @@ namespace bandsaw::fuzz {
 void run(absl::Span<const std::uint8_t> input);
 
 /// Reads the input as a sequence of events: calls step(what, number) for every three bytes, at most
-/// `most` times. `what` is the first byte, `number` the other two, little-endian.
+/// `most` times. `what` is the first byte. `number` is the second and the third byte,
+/// little-endian.
 template <class F>
 void each_step(absl::Span<const std::uint8_t> input, std::size_t most, F step) {
   for (std::size_t at = 0; at + 3 <= std::min(input.size(), 3 * most); at += 3) {

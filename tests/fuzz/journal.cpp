@@ -1,5 +1,6 @@
-// Fuzz target (fuzz.h): a record of the coordinator's journal. The first line of the input is the
-// kind of the record, the rest are its fields.
+// Fuzz target (fuzz.h): a record of the coordinator's journal, the file from which a restarted
+// coordinator rebuilds its state. The first line of the input is the kind of the record, and the
+// rest is the text of the record's fields.
 
 #include "coordinator/store/record_text.h"
 #include "renderlib/base/check.h"

@@ -1,6 +1,7 @@
 // Fuzz target (fuzz.h): an input that begins with '<' is a scene of Mitsuba, which the importer
-// reads without any other files. What is imported must be decodable as a scene package. Any other
-// input is a mesh file of a scene of Mitsuba.
+// reads without any other files. The imported scene is encoded as a scene package, the form in
+// which workers get scenes, and this package must be decodable. Any other input is a mesh file of a
+// scene of Mitsuba.
 
 #include <fstream>
 
@@ -15,6 +16,7 @@
 namespace bandsaw {
 namespace {
 
+/// Reads a PLY, serialized or OBJ file. An accepted mesh must have valid indices and normals.
 void read_mesh(absl::string_view bytes) {
   const auto mesh = absl::StartsWith(bytes, "ply") ? mitsuba::read_ply(bytes, /*flip_v=*/false)
                     : absl::StartsWith(bytes, "\x1c")

@@ -1,5 +1,6 @@
 // Fuzz target (fuzz.h): a scene of pbrt through the converter and the importer, without any other
-// files. What is imported must be decodable as a scene package.
+// files. The imported scene is encoded as a scene package, the form in which workers get scenes,
+// and this package must be decodable.
 
 #include <fstream>
 

@@ -1,5 +1,6 @@
-// Fuzz target (fuzz.h): the messages of the coordinator to a worker, each after two bytes with its
-// length, little-endian. Every task that the worker then starts must be one that can be rendered.
+// Fuzz target (fuzz.h): the messages of the coordinator to a worker. Two bytes before each message
+// are its length, little-endian. Every task that the worker then starts must be one that can be
+// rendered.
 
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"

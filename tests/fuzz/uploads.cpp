@@ -30,6 +30,7 @@ const std::string& content() {
   return bytes;
 }
 
+/// Uploads one blob to a store again and again, with interruptions and wrong bytes.
 class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
@@ -69,6 +70,7 @@ class Sender {
     intake_ = {};
   }
 
+  /// Overwrites a byte of the stored part; `number` selects its place.
   void damage(std::uint32_t number) {
     const std::uint64_t size = store_->partial(digest_);
     if (size > 0) {
@@ -78,6 +80,7 @@ class Sender {
     }
   }
 
+  /// Ends the upload. If all bytes have come, they must be stored or, if they are wrong, forgotten.
   void finish() {
     if (!intake_.end().ok()) {
       return leave();
@@ -120,6 +123,8 @@ class Sender {
     BANDSAW_CHECK(writer_->append(std::as_bytes(std::span(data))).ok(), "there is room");
   }
 
+  /// Checks that a stored part is not too long. If the whole blob is stored, checks its bytes and
+  /// removes it, so that it can be uploaded again.
   void check() {
     BANDSAW_CHECK(store_->partial(digest_) <= content().size(),
                   "a part is not more than the whole");

@@ -1,4 +1,4 @@
-// Cases B1 to B4 and B6 of cases.txt: boxes and BVHs.
+// Tests the hard cases B1 to B4 and B6, which cases.txt lists: boxes and BVHs.
 
 #include <gtest/gtest.h>
 
@@ -140,7 +140,7 @@ TreeItems items_of(const Mesh& mesh) {
   return items;
 }
 
-/// Returns the mean number of boxes in the tree that a ray intersects.
+/// Returns how many boxes of the tree a ray intersects, as a mean over the rays.
 double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   double met = 0;
   for (const Ray& ray : rays) {

@@ -1,5 +1,5 @@
-// Cases M2, M7, M8, M11 and M12 of cases.txt (materials), and a test of the masking term of
-// microfacets.
+// Tests the hard cases M2, M7, M8, M11 and M12 (materials), which cases.txt lists. Also tests the
+// masking term of microfacets.
 //
 // In texts, u is the unit roundoff of double, 2^-53.
 
@@ -87,8 +87,8 @@ long double exact_fresnel(double cosine, double eta) {
 }
 
 TEST(MaterialHardCases, M7_FresnelIsAccurateAroundTheCriticalAngle) {
-  test::Worst error;
-  test::Worst near_error;
+  test::Worst error;       // at a distance of 1e-5 or more from the critical cosine
+  test::Worst near_error;  // at a smaller distance
   for (const double eta : {1 / 1.33, 1 / 1.5, 1 / 2.4}) {
     const double critical = std::sqrt(1 - eta * eta);
     for (int k = 2; k <= 12; ++k) {

@@ -1,5 +1,5 @@
-// Cases T1, T2, T4, T6, T8, T11, T14 (triangles and meshes) and B7 (sizes that halve a thousand
-// times) of cases.txt.
+// Tests the hard cases T1, T2, T4, T6, T8, T11, T14 (triangles and meshes) and B7 (sizes that halve
+// a thousand times), which cases.txt lists.
 //
 // In texts, u is the unit roundoff of double, 2^-53.
 
@@ -80,6 +80,7 @@ TEST(Triangle, T4_ATriangleWithoutAreaIsNeverHit) {
   }
   maker.instance(mesh, {}, lamp);
   const auto scene = maker.build();
+  // Each of the three triangles is removed twice: as a shape and as a part of the mesh.
   EXPECT_EQ(scene->dropped_primitives(), 6u);
   EXPECT_TRUE(scene->lights().empty());
   int hits = 0;

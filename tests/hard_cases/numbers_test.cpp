@@ -1,5 +1,5 @@
-// Cases A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3 and R9 of cases.txt, in which numbers lose
-// precision.
+// Tests the hard cases A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3 and R9, in which numbers can
+// lose precision (cases.txt).
 //
 // In texts, u is the unit roundoff of double, 2^-53.
 
@@ -71,7 +71,8 @@ TEST(SphericalRectangle, L5_SmallRectanglesKeepTheirSolidAngle) {
       const auto seen = SphericalRectangle::seen_from({0, 0, 0}, {aside - h, -h, 1}, {2 * h, 0, 0},
                                                       {0, 2 * h, 0});
       ASSERT_TRUE(seen);
-      // The corners are rounded: the sum of aside - h and 2 h is not exactly aside + h.
+      // The corners are rounded: the sum of aside - h and 2 h is not exactly aside + h. The error
+      // includes the effect of this rounding.
       error.see(std::abs(static_cast<double>(seen->solid_angle() / solid_angle(h, aside) - 1)));
     }
     test::at_most("L5",
@@ -165,7 +166,8 @@ TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
 }
 
 // One pixel gets the sums of samples 0 to 16, 16 to 32, 32 to 64 and so on, up to 2^30 samples.
-// Each sum is a node of the summation tree. It is the sum, in double, of floats from [0, 2).
+// The samples of a pixel are summed in a binary tree, and each of these sums belongs to a node of
+// the tree. Each sum adds floats from [0, 2) in double.
 TEST(Film, A1_LongSumsKeepTheirDigits) {
   auto film = Film::create(1, 1, "");
   ASSERT_TRUE(film.ok());

@@ -1,5 +1,5 @@
-// Cases O1, O5, O7 (rays that leave surfaces), Q8 (closed boxes) and Q1 (shared edges of quads) of
-// cases.txt.
+// Tests the hard cases O1, O5, O7 (rays that leave surfaces), Q8 (closed boxes) and Q1 (shared
+// edges of quads), which cases.txt lists.
 
 #include <gtest/gtest.h>
 
@@ -87,8 +87,8 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
                 hits, 0);
 }
 
-/// Two plane quads that meet in the z axis. The first is at the angle 0 from the x axis, the second
-/// at `angle`. Paths scatter between them.
+/// Two plane quads that meet in the z axis. The first quad is at the angle 0 from the x axis, and
+/// the second quad is at the angle `angle`. Paths scatter between the quads.
 struct Crease {
   Geometry geometry;
   Vec3 inwards[2];

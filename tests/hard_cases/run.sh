@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every hard case with its full number of tries and writes the figures into README.md's table.
 # Usage: tests/hard_cases/run.sh [BUILD_FOLDER [IDS]]      (default build/release; built with BANDSAW_TESTS=ON)
-# IDS: only these, as in "A4|A5"; the figures of the others are those of the previous run in this build folder.
+# IDS: run only these cases, for example "A4|A5". The other cases keep their figures of the previous run in this build folder.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:-build/release}
@@ -10,7 +10,7 @@ kept=$build/hard_case_figures
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Runs the tests whose names contain an id. The program hard_cases has two entries in CTest; the one with few tries is excluded.
+# Runs the tests whose names contain an id. The program hard_cases has two entries in CTest. The entry with few tries is excluded.
 ids=${2:-[STQBOCXMLVRAPY][0-9]+|TX[0-9]+}
 status=0
 ctest --test-dir "$build" --no-tests=error --parallel "$(nproc)" --extra-verbose \
@@ -20,7 +20,7 @@ sed -n 's/^\([0-9]*\): \(\[ case .*\)$/\1 \2/p' "$work/log" | sort --stable --nu
 cp "$work/new" "$work/figures"
 tail -n 3 "$work/log"
 if [ $# -ge 2 ] && [ -f "$kept" ]; then
-  # The figures of a test that ran replace its previous ones; those of a removed test are dropped.
+  # If a test ran, its new figures replace its previous figures. The figures of removed tests are dropped.
   awk -v new="$work/new" '
     function says(file, id,   line) {
       if (!(file in text)) while ((getline line < file) > 0) text[file] = text[file] line

@@ -1,7 +1,7 @@
-// Cases C5, R6, R10, B12 and Y3 of cases.txt. The pixels' sums of thirteen gallery scenes have the
-// hashes in same_bits.txt, in every build by every compiler. A change that alters pixels increments
-// kPixelVersion. The table in same_bits.txt changes only together with kPixelVersion. If the test
-// fails, the test prints the new table.
+// Tests the hard cases C5, R6, R10, B12 and Y3 (cases.txt). The pixels' sums of thirteen gallery
+// scenes have the hashes in same_bits.txt, in every build by every compiler. A change that alters
+// pixels increments kPixelVersion. The table in same_bits.txt changes only together with
+// kPixelVersion. If the test fails, the test prints the new table.
 
 #include <gtest/gtest.h>
 
@@ -72,9 +72,10 @@ bool is_small(const Geometry& geometry) {
          std::all_of(geometry.meshes.begin(), geometry.meshes.end(), few);
 }
 
+/// The contents of same_bits.txt.
 struct Table {
-  std::uint32_t pixel_version = 0;            ///< that of the program that recorded the hashes
-  std::map<std::string, std::string> hashes;  ///< of the sums of each scene, by its name
+  std::uint32_t pixel_version = 0;            ///< kPixelVersion when the hashes were recorded
+  std::map<std::string, std::string> hashes;  ///< hash of each scene, by the scene's name
 };
 
 Table read_table() {

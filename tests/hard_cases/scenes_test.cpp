@@ -1,4 +1,4 @@
-// Cases that need a whole scene: C1, M9, O6, Q4 and T13 of cases.txt.
+// Tests the hard cases C1, M9, O6, Q4 and T13 (cases.txt), which need a whole scene.
 
 #include <gtest/gtest.h>
 
@@ -112,8 +112,8 @@ test::Moments through_water_and_glass(double overlap) {
     maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
     maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
   };
-  slab(1 - overlap, 2, {1.33, 0, 1});
-  slab(0, 1, {1.5, 0, 2});
+  slab(1 - overlap, 2, {1.33, /*roughness=*/0, /*priority=*/1});
+  slab(0, 1, {1.5, /*roughness=*/0, /*priority=*/2});
   const double s = std::sqrt(0.5);
   const auto aside = [&](double index) { return s / std::sqrt(index * index - s * s); };
   const double x = aside(1.33) + aside(1.5) + 1;
@@ -135,6 +135,7 @@ TEST(NestedGlass, M9_AnySizeOfTheOverlapGivesTheSameLight) {
       std::abs(through_water_and_glass(0).mean() - truth), 1e-3);
 }
 
+/// Returns 60 spheres and a mesh around the point `at`, with a camera that looks at this point.
 test::SceneMaker spheres_and_mesh(const Vec3& at) {
   test::SceneMaker maker;
   const MaterialId white = maker.diffuse(0.5f);

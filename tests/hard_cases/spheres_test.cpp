@@ -1,4 +1,5 @@
-// Cases S1 to S8 and S10 (spheres) and M9 (a bubble in glass) of cases.txt.
+// Tests the hard cases S1 to S8 and S10 (spheres) and M9 (a bubble in glass), which cases.txt
+// lists.
 //
 // In texts, u is the unit roundoff of double, 2^-53.
 
@@ -38,7 +39,8 @@ std::optional<double> hit(const Ray& ray, const Sphere& sphere, bool starts_on_i
   return crossing.t;
 }
 
-/// The squared impact parameter and both roots, without rounding.
+/// The squared distance of the ray's line from the sphere's centre, and the ray's parameter at both
+/// intersections, without rounding.
 struct Truth {
   Wide offset2;
   Wide near;

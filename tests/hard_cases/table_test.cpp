@@ -49,8 +49,8 @@ std::vector<std::string> known_ids() {
   return ids;
 }
 
-/// Returns, for each id of a case, the files that have a test whose name begins with it. A name may
-/// begin with several ids: TEST(Media, V6V7_…).
+/// Returns for each id of a case the files with tests of the case. The name of such a test begins
+/// with the id, or with several ids: TEST(Media, V6V7_…).
 std::map<std::string, std::set<std::string>> files_by_id() {
   std::map<std::string, std::set<std::string>> files;
   const std::regex test(R"(\bTEST(?:_F|_P)?\(\w+,\s*((?:[A-Z]{1,2}[0-9]+)+)(?=[_A-Z]))");
