@@ -29,9 +29,9 @@ join_here no-avx2 "$scratch/logs/no-avx2" qemu-x86_64-static -cpu Nehalem "$buil
 join_here arm64 "$scratch/logs/arm64" qemu-aarch64-static -L "${BANDSAW_ARM64_ROOT:-/}" "$arm64/bin/bandsaw-worker" --threads 1
 
 # same_bytes SCENE SAMPLES renders a scene on the farm and on this machine, and compares the images. The emulated workers are 30 to 100 times
-# slower than the other two. The fast workers would render the whole image alone, because they also render the bands that slow workers hold (as
-# backup tasks). So the fast workers join only when both emulated workers have bands in the image, and they leave after the job. In the second
-# job the coordinator calls the fast workers NAME-2.
+# slower than the other two. The coordinator also gives the bands of slow workers to idle workers (backup tasks), so the fast workers would
+# render the whole image alone. Therefore the fast workers join only when both emulated workers have bands in the image, and they leave after
+# the job. In the second job the coordinator calls the fast workers NAME-2.
 same_bytes() {
   local scene=$1 options=(--width 64 --samples "$2") progress=$scratch/$1.progress emulated=${#pids[@]} name
   : >"$progress"

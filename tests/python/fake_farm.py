@@ -20,7 +20,7 @@ class FakeFarm:
     """A job takes `seconds`. If `seconds` is 0, each request for the state of a job completes a quarter of the job. Tests may set four variables.
     `refusals`: the HTTP statuses with which the next scenes are refused. `full`: True if the disk of the coordinator is full, so that files are
     refused. `warnings`: the warnings in the answer to every accepted scene. `clean_failure`: the reason why denoising fails, or "" if it
-    does not fail. `scenes`, `jobs` and `requests` hold all that it has received."""
+    does not fail. `scenes`, `jobs` and `requests` hold all that the coordinator has received."""
 
     def __init__(self, seconds=0.0):
         self.seconds, self.refusals, self.warnings, self.full, self.clean_failure = seconds, [], [], False, ""
@@ -132,6 +132,7 @@ class FakeFarm:
     # ---- jobs ----
 
     def fraction(self, job):
+        """Returns the finished share of a job. "looks" is the number of requests for the state of the job."""
         if self.seconds == 0 or job["kind"] != "path":
             return min(job["looks"] / 4, 1.0)
         return min((time.monotonic() - job["began"]) / self.seconds, 1.0)
@@ -180,8 +181,8 @@ class FakeFarm:
         return self.reply(states[min(job["clean"], 3)])
 
     def picture(self, job, share):
-        """Returns a PFM file. Red grows to the right and green upwards; the rows that are not rendered, the lower ones, are black. Layers and
-        denoised pictures are constant."""
+        """Returns a PFM file. Red grows to the right and green upwards. The upper part `share` of the rows is rendered, and the other rows are
+        black. Layers and denoised pictures are constant."""
         width, height = job["width"], job["height"]
         constants = {"albedo": (0.5, 0.25, 0.125), "normals": (0.5, 1.0, 0.5), "depth": (7.0, 7.0, 7.0), "clean": (0.75, 0.5, 0.25)}
         rows = bytearray()

@@ -57,8 +57,8 @@ class LoopbackFarm:
 
 
 def refuse_early(test, farm):
-    """Sends a file that is too large. The coordinator refuses it at once and closes the connection after two seconds. Checks that the error has
-    the coordinator's reason, although more bytes were sent."""
+    """Sends a file that is too large. The coordinator refuses the file at once and closes the connection after two seconds. Checks that
+    the error has the coordinator's reason, although this function goes on sending after the refusal."""
     size = 1 << 40
 
     def body():
@@ -164,7 +164,8 @@ class OnAFarm(unittest.TestCase):
         refuse_early(self, self.farm)
 
     def test_a_loopback_address_may_be_a_tunnel(self):
-        # The changed string names only the port of the dashboard, not its address. So the client cannot know that this dashboard has no TLS.
+        # The changed string names only the port of the dashboard, not its address. The client cannot know that this dashboard has no TLS,
+        # so it must try TLS and then plain HTTP.
         places, rest = self.loopback.string.split("+", 1)
         web, rest = rest.split("-", 1)
         self.assertRegex(web, r"^127\.0\.0\.1:\d+$")

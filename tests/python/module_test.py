@@ -26,6 +26,7 @@ DIGEST, SECRET = "A" * 42 + "-", "abcdefghijklmnopqrst-_"
 
 
 def string(places="10.0.0.1:7878", digest=DIGEST):
+    """Returns the string of a farm. `places`: the addresses HOST:PORT of the coordinator, then + and the address or the port of the dashboard."""
     return f"bsw1-f-{places}-{digest}-{SECRET}"
 
 
@@ -357,6 +358,7 @@ class Jobs(unittest.TestCase):
 
 
 def image(width, height, values):
+    """Returns an image with these values, three for each pixel, with rows from the top."""
     floats = array.array("f", values)
     if bandsaw.numpy is not None:
         floats = bandsaw.numpy.array(floats, dtype="float32")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests that a farm of deploy/loopback.sh ends although its worker holds bands. Two scripts stand in for bandsaw and bandsaw-worker. The worker's
-# script ends at its second signal only, as bandsaw-worker does if it holds bands that no coordinator takes.
+# Tests that a farm of deploy/loopback.sh ends although its worker holds bands. Two scripts stand in for bandsaw and bandsaw-worker. The script
+# of the worker ends only at the second signal, as bandsaw-worker does if it holds bands that no coordinator takes.
 # Usage: loopback.sh SOURCE-FOLDER
 set -euo pipefail
 source=$(cd "$1" && pwd)
