@@ -85,7 +85,7 @@ GrownScene lamps(double count) {
     const Vec3 at = test::random_point(random);
     maker.sphere({at.x, at.y, 0.3 + 0.1 * at.z}, radius, lamp);
   }
-  return grown(std::move(maker), 2);
+  return grown(std::move(maker), /*max_depth=*/2);
 }
 
 /// A floor with an image of this many texels.

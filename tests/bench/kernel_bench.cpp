@@ -115,7 +115,8 @@ BuildSeconds build_seconds(const Geometry& geometry, Pool& pool) {
     const auto start = std::chrono::steady_clock::now();
     const Accel accel = Accel::build(geometry, pool);
     least.bandsaw = std::min(least.bandsaw, seconds_since(start));
-    if (const auto fast = EmbreeKernel::create(geometry.meshes.front(), false, kEmbreeConfig)) {
+    if (const auto fast =
+            EmbreeKernel::create(geometry.meshes.front(), /*robust=*/false, kEmbreeConfig)) {
       least.embree = std::min(least.embree, fast->build_seconds());
     }
   }
@@ -139,14 +140,14 @@ int measure(const std::string& name) {
   std::printf("%s: %zu triangles\n", name.c_str(), mesh.triangles.size());
   std::printf("build     bandsaw %.0f ms, %.1f bytes a triangle", seconds.bandsaw * 1e3,
               static_cast<double>(accel.bytes()) / triangles);
-  const auto robust = EmbreeKernel::create(mesh, true, kEmbreeConfig);
-  const auto fast = EmbreeKernel::create(mesh, false, kEmbreeConfig);
+  const auto robust = EmbreeKernel::create(mesh, /*robust=*/true, kEmbreeConfig);
+  const auto fast = EmbreeKernel::create(mesh, /*robust=*/false, kEmbreeConfig);
   if (fast) {
     std::printf("; embree %.0f ms, %.1f bytes; time bandsaw/embree %.2f", seconds.embree * 1e3,
                 static_cast<double>(fast->bytes()) / triangles, seconds.bandsaw / seconds.embree);
   }
   std::printf("\n");
-  const RaySets sets = make_rays(mesh, accel, name == "room");
+  const RaySets sets = make_rays(mesh, accel, /*from_within=*/name == "room");
   const auto kernels = [&](auto make) {
     std::vector<Kernel> result = {make("bandsaw", accel)};
     if (fast) {

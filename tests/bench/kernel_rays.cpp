@@ -1,5 +1,5 @@
-// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels. From each point that they hit,
-// there is a ray in a random direction and a shadow ray to a light.
+// Makes the rays of kernel_bench: camera rays in tiles of 8 x 8 pixels, and two rays from each
+// point that a camera ray hits. One has a random direction, and one is a shadow ray to a light.
 
 #include "tests/bench/kernel_rays.h"
 
@@ -11,8 +11,8 @@
 namespace bandsaw::bench {
 namespace {
 
-constexpr int kTile = 8;
-constexpr int kSide = 1024;
+constexpr int kTile = 8;     // width and height of a tile, pixels
+constexpr int kSide = 1024;  // width and height of the image, pixels
 
 /// Rounds the coordinates to floats.
 Vec3 to_float(const Vec3& p) {
@@ -74,6 +74,8 @@ RaySets make_rays(const Mesh& mesh, const Accel& accel, bool from_within) {
     const Vec3 out = test::random_direction(random);
     sets.bounce.push_back({at, to_float(normalize(normal * 1.0001 + out))});
     const Vec3 spot = test::random_point(random);
+    // Height of the light above the middle, in sizes of the mesh: just below the top of the
+    // bounding box, or above the box.
     const double lift = from_within ? 0.48 : 1.5;
     const Vec3 light = view.middle + size * Vec3{0.3 * spot.x, lift, 0.3 * spot.z};
     sets.shadow.push_back({at, to_float(light - at), 1});

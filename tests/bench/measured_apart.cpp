@@ -1,5 +1,5 @@
-// Measures in a child process, so that the peak memory of one measurement does not include that of
-// the others. The child returns its figures through a pipe.
+// Makes each measurement in a child process of its own, so that the peak memory of one measurement
+// does not include the memory of earlier ones. The child returns its figures through a pipe.
 
 #include "tests/bench/measured_apart.h"
 

@@ -157,7 +157,8 @@ class PhoneRun {
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> built, Scene::build(std::move(copy), pool));
     const double ready = steady_seconds();
     ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(*built, image.settings, kSamples, pool, stop_, {}, ""));
+                     render_image(*built, image.settings, kSamples, pool, stop_, /*progress=*/{},
+                                  /*spill_folder=*/""));
     times.build.push_back(1000 * (ready - begin));
     times.render.push_back(1000 * (steady_seconds() - ready));
     image.times.rays = static_cast<double>(rendered.counters.rays);

@@ -10,6 +10,7 @@
 
 namespace bandsaw::test {
 
+/// The machines of one test. A machine is created when `ssh` first names it.
 class FakeMachines {
  public:
   FakeMachines();
@@ -22,8 +23,8 @@ class FakeMachines {
   void replace(const std::string& host, const std::string& command, const std::string& script);
   /// Adds a systemctl and a loginctl that manage one user service and log their calls.
   void add_systemd(const std::string& host);
-  /// Environment in which the `ssh` script precedes the real one. Host "nobody" cannot be reached,
-  /// "stranger" has an unknown key, "frozen" never answers.
+  /// Returns the environment in which `ssh` is the script. Three hosts have problems: "nobody"
+  /// cannot be reached, "stranger" has an unknown key, and "frozen" never answers.
   std::vector<std::string> environment() const;
   std::string home(const std::string& host) const { return folder_ / ("homes/" + host); }
   std::string worker_folder(const std::string& host) const {

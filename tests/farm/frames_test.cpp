@@ -69,6 +69,7 @@ class Frames : public testing::Test {
   }
   std::string file_of(int frame) const { return farm_.path(absl::StrFormat("w.%04d.pfm", frame)); }
 
+  /// Expects that the file of the frame has the bytes of `render --frame`.
   void expect_bytes_of_render(int frame, const std::vector<std::string>& more = {}) {
     render_alone(frame, more);
     EXPECT_TRUE(file_bytes(file_of(frame)) == file_bytes(farm_.path("alone.pfm")))

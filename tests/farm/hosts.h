@@ -12,7 +12,7 @@
 
 namespace bandsaw::test {
 
-/// Each machine is known by its name.
+/// The machines and their switch. The functions take the names of machines.
 class Hosts {
  public:
   /// While this object exists, the sockets that the calling thread opens and the processes that the
@@ -30,8 +30,8 @@ class Hosts {
     int home_;  ///< file descriptor of the thread's own namespace
   };
 
-  /// Creates the machines of these names and the switch. PERMISSION_DENIED: namespaces cannot be
-  /// created here (this needs root and the command `ip`).
+  /// Creates the machines of these names and the switch. PERMISSION_DENIED: this process cannot
+  /// create namespaces, which needs root and the command `ip`.
   static absl::StatusOr<std::unique_ptr<Hosts>> create(std::vector<std::string> names);
   ~Hosts();
   Hosts(const Hosts&) = delete;

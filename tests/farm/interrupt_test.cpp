@@ -52,8 +52,8 @@ bool is_imported(const std::string& temporary) {
   return false;
 }
 
-/// Returns true if the process has no child. `pid` is the id of its first thread, which starts its
-/// children.
+/// Returns true if the process `pid` has no child. The first thread of the process, whose id is
+/// also `pid`, starts all children.
 bool has_no_child(pid_t pid) {
   std::ifstream children(absl::StrCat("/proc/", pid, "/task/", pid, "/children"));
   std::string first;
@@ -65,7 +65,7 @@ bool has_no_child(pid_t pid) {
 // 0.
 TEST(Interrupt, AnInterruptAfterTheImportLeavesNoTemporaryFiles) {
   const TempDir folder;
-  write_grid(folder / "grid.ply", 800);
+  write_grid(folder / "grid.ply", 800);  // so large that the build of the BVH takes a while
   const std::string temporary = folder / "tmp";
   std::filesystem::create_directory(temporary);
   Process info = Process::start({BANDSAW_BIN, "info", folder / "grid.ply"},

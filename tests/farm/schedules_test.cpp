@@ -35,7 +35,7 @@ std::vector<std::string> with_job(std::vector<std::string> arguments) {
 /// One farm, one job, and the events of one seed.
 class Schedule {
  public:
-  /// Cables are pulled if `hosts` is given, which MUST outlive this object.
+  /// If `hosts` is given, cables are pulled too. `hosts` MUST outlive this object.
   Schedule(std::uint64_t seed, const Hosts* hosts) : random_(seed), hosts_(hosts), farm_(hosts) {}
 
   /// Returns the image's bytes; empty: the job failed, see outcome().

@@ -1,4 +1,5 @@
-// bandsaw-worker is one file that runs on other machines: it needs only Linux and glibc.
+// Tests that the file bandsaw-worker runs on other machines without further files, because it needs
+// only Linux and glibc. Also tests that the command `bandsaw` recognises this file.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -28,8 +28,8 @@ void submit_job(Scheduler& scheduler) {
   scheduler.step(input::Submit{spec}, 0);
 }
 
-/// Returns the scheduler's input for a message; nullopt if the coordinator refuses it, or does not
-/// give such messages to the scheduler.
+/// Returns the scheduler's input for a message. Returns nullopt if the coordinator refuses the
+/// message, or does not give messages of this kind to the scheduler.
 std::optional<Input> as_input(const farm::FromWorker& message) {
   constexpr SessionId kSession = 1;
   switch (message.kind_case()) {

@@ -54,8 +54,8 @@ void over_a_connection(Access& access, absl::Span<const std::uint8_t> input) {
   close(sockets[0]);
 }
 
-/// Makes a request of the lines of the input and answers it. Then reduces the answer to the range
-/// of bytes that the request's headers ask for, if they ask for one.
+/// Makes a request of the lines of the input and answers it. If the request's headers ask for a
+/// range of bytes, then reduces the answer to this range.
 void as_lines(Access& access, absl::Span<const std::uint8_t> input) {
   std::istringstream lines(bandsaw::fuzz::text(input));
   HttpRequest request;

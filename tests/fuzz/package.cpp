@@ -11,6 +11,7 @@
 
 namespace {
 
+/// The bytes of a blob.
 class OneBlob : public bandsaw::BlobBytes {
  public:
   explicit OneBlob(absl::Span<const std::byte> bytes) : bytes_(bytes) {}

@@ -15,7 +15,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
   }
   const absl::StatusOr<float> checked = check_grid(read->grid);
   // The file's box may be so flat that `to_medium` has no inverse. The reader of scene files checks
-  // that later.
+  // the box later.
   BANDSAW_CHECK(checked.ok() || !inverse(read->grid.to_medium),
                 checked.status().ToString().c_str());
 }

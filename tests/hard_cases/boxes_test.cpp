@@ -105,6 +105,7 @@ std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
 
 TEST(Tree, B2B3_NeverMissesABoxThatIsHit) {
   test::Random random(1);
+  // run.sh uses the second number of tries, and the default tests use the first.
   const int boxes = tries(200'000, 10'000'000);
   for (const bool at_any_distance : {true, false}) {
     int met = 0;

@@ -50,6 +50,7 @@ TEST(MaterialHardCases, M2_PdfsNearZeroGiveFiniteNumbers) {
                                 Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};
   const double edges[] = {0, 0x1p-32, 0.5, 1 - 0x1p-24, 1 - 0x1p-32};
   Random random(5);
+  // run.sh uses the second number of tries, and the default tests use the first.
   const int tries = test::tries(20'000, 20'000'000);
   for (const Material& material : materials) {
     for (int i = 0; i < tries; ++i) {

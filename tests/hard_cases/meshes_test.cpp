@@ -45,6 +45,7 @@ void expect_no_leaks(const char* id, const std::string& mesh, int leaks, int ray
 }
 
 TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
+  // run.sh uses the second number of tries, and the default tests use the first.
   const int most = tries(150'000, 10'000'000);
   const int some = tries(150'000, 1'000'000);
   const auto check = [](const char* id, const char* name, const Mesh& mesh, const Vec3& at,

@@ -173,6 +173,7 @@ TEST(Film, A1_LongSumsKeepTheirDigits) {
   ASSERT_TRUE(film.ok());
   Random random(2);
   std::uint64_t exact = 0;
+  // run.sh uses the second number of tries, and the default tests use the first.
   const std::uint64_t samples = std::uint64_t{1} << tries(22, 30);
   for (SampleRange node{0, 16}; node.first < samples; node = {node.last, 2 * node.last}) {
     double sum = 0;

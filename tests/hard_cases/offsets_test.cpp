@@ -55,6 +55,7 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
                                             {1e-3, 1}, {1e6, 0}, {1e-6, 1e-6}};
   Pool pool(1);
   Random random(1);
+  // run.sh uses the second number of tries, and the default tests use the first.
   const int rays = tries(20'000, 1'000'000);
   const Vec3 up = rotation({1, 2, 3}, 33).point({0, 1, 0});
   int hits = 0;

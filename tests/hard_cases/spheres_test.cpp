@@ -61,6 +61,7 @@ Truth truth(const Ray& ray, const Sphere& sphere) {
 
 TEST(Sphere, S1_IsHitCorrectlyFromFarAway) {
   test::Random random(1);
+  // run.sh uses the second number of tries, and the default tests use the first.
   const int rays = tries(20'000, 1'000'000);
   for (const double distance : {150.0, 1.5e3, 1.5e4, 1.5e6}) {
     double square_error = 0;
