@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Measures what the frames of a sequence cost beyond their samples, on a farm of one local worker with one thread. Prints:
+# Measures the overhead of a sequence of frames: the cost beyond the rendering of the samples. The farm has one local worker with one
+# thread. Prints:
 # - a ratio: the time of all frames, from the start of `bandsaw submit` to its end, divided by the time in which `bandsaw render`
 #   renders the same number of samples in one image after it has read the scene;
 # - the time until the first frame is written, the bytes that a frame adds to the files of the coordinator, and the CPU time and

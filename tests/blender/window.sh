@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests the add-on in a window of Blender under Xvfb. F12 must start a render at a fake coordinator (window_test.py), which
-# takes two minutes for it. The picture must grow in the window, and Esc must cancel the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
+# Tests the add-on in a window of Blender under Xvfb. F12 must start a render at a fake coordinator (window_test.py). The
+# render takes two minutes. The picture must grow in the window, and Esc must cancel the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
 set -euo pipefail
 work=$1 shots=$2
 here=$(cd "$(dirname "$0")" && pwd)

@@ -31,7 +31,7 @@ class Survival {
 
   /// Counts bands that one worker had stored and another rendered as well, and bands that one
   /// worker rendered twice. Rows that the coordinator gave to two workers on purpose do not count:
-  /// it copies or moves rows of a slow worker to an idle worker. Bands that the worker
+  /// the coordinator copies or moves rows of a slow worker to an idle worker. Bands that the worker
   /// `cut_off` rendered in vain do not count either. That worker could not know what the other
   /// workers did meanwhile, or it was killed before it could send its bands.
   int rendered_again(const std::string& cut_off = "");

@@ -3,7 +3,7 @@
 // A fuzz target is one .cpp file that defines run(), which gives any bytes to one reader of
 // Bandsaw. The reader must take the bytes without a crash or a leak. Many targets also write what
 // the reader accepts, and then read it again; it must be unchanged. libFuzzer calls run() through
-// libfuzzer.cpp, and CTest calls it with the stored inputs (the corpus) through replay.cpp.
+// libfuzzer.cpp, and CTest calls run() with the stored inputs (the corpus) through replay.cpp.
 
 #include <algorithm>
 #include <cstddef>

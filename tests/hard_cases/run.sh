@@ -15,7 +15,7 @@ ids=${2:-[STQBOCXMLVRAPY][0-9]+|TX[0-9]+}
 status=0
 ctest --test-dir "$build" --no-tests=error --parallel "$(nproc)" --extra-verbose \
   --tests-regex "\.([A-Z]+[0-9]+)*($ids)([^0-9]|$)" --label-exclude '^hard_cases$' > "$work/log" || status=$?
-# Tests end in any order; their figures are sorted by their numbers.
+# Tests end in any order. So the figures are sorted by the numbers of the tests.
 sed -n 's/^\([0-9]*\): \(\[ case .*\)$/\1 \2/p' "$work/log" | sort --stable --numeric-sort --key=1,1 | cut -d ' ' -f 2- > "$work/new"
 cp "$work/new" "$work/figures"
 tail -n 3 "$work/log"
