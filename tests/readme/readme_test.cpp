@@ -1,5 +1,6 @@
-// Every `sh` block of the README, except the one that runs the tests, runs unchanged in a new
-// folder with links to the checkout's files.
+// Checks the README: it has its commands, headings and picture, and each of its `sh` blocks runs.
+// Every block runs unchanged in a new folder that has links to the checkout's files. The block that
+// runs the tests is left out.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the text of each `sh` block of a Markdown file.
+/// Returns the text of each `sh` block of the Markdown file at `path`.
 std::vector<std::string> shell_blocks(const std::string& path) {
   std::vector<std::string> blocks;
   std::ifstream file(path);

@@ -19,6 +19,7 @@ finish() {
 }
 trap finish EXIT
 
+# Makes a network namespace for each host, and one for the switch that connects them.
 make_hosts() {
   ip netns add "$net-switch"
   ip -netns "$net-switch" link add bridge type bridge
@@ -36,7 +37,7 @@ make_hosts() {
   done
 }
 
-# Replaces the page's placeholders by the text that a user would paste.
+# Prints the block with JOIN and FARM replaced by the text that a user would paste.
 pasted() {
   local text=$1 farm=$work/studio/farm
   [ -s "$farm/join" ] && text=${text//--join JOIN/--join $(cat "$farm/join")}
@@ -44,7 +45,8 @@ pasted() {
   printf '%s' "$text"
 }
 
-run_block() {
+# Runs a block on a host. `how` is the word that follows HOST: `stays`, `stops` or nothing.
+run_block() {  # host how block
   local host=$1 how=$2 text
   text=$(pasted "$3")
   cd "$work/$host"

@@ -3,11 +3,13 @@
 //   mitsuba_refs FOLDER [--only NAME] [--samples N] [--budget N] [--seeds N] [--out FOLDER]
 //
 // FOLDER is a copy of Mitsuba's test data: tests/scenes/*/*.xml, and beside them
-// refs/NAME_ref_rgb.exr and refs/NAME_ref_rgb_var.exr, the variance of one sample. Each scene is
-// rendered with --seeds seeds (default 16). With --samples, all seeds together take that many
-// samples of each pixel. Otherwise all seeds together take --budget samples (default 2 million, as
-// in Mitsuba's tests), which are spread over all pixels. --out gets a PNG for each scene that has a
-// reference of the same size.
+// refs/STEM_ref_rgb.exr and refs/STEM_ref_rgb_var.exr, the variance of one sample. STEM is the name
+// of the scene's file without the last "_" and what follows it. With --only, the tool renders only
+// the scenes whose path contains NAME. Each scene is rendered with --seeds seeds (default 16). With
+// --samples, all seeds together take that many samples of each pixel. Otherwise all seeds together
+// take --budget samples (default 2 million, as in Mitsuba's tests), which are spread over all
+// pixels. With --out, the tool writes a PNG into that folder for each scene that has a reference of
+// the same size.
 //
 // A channel of a pixel fails if the p-value of its difference from the reference is below Sidak's
 // level. At this level, at least one of N independent tests fails by chance with a probability of
@@ -115,6 +117,7 @@ absl::StatusOr<Rendered> render(const std::string& path, const Options& options,
   return out;
 }
 
+/// Reads and decodes an image file. Fails if the file cannot be read or decoded.
 absl::StatusOr<Image> read_image(const std::string& path) {
   ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(path, kMaxImageFileBytes));
   return decode_picture(bytes);
@@ -186,8 +189,8 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
 }
 
 /// Writes the rendered image, the reference and z side by side. z is shown in red where the
-/// rendered image is brighter, and in blue where it is darker. The colour has the value 1 if the
-/// mean of z over the three channels is 5 standard deviations.
+/// rendered image is brighter, and in blue where the rendered image is darker. The value of the
+/// colour is a fifth of the absolute mean of z over the three channels.
 void write_images(const std::string& path, const Rendered& ours, const Image& reference,
                   const Comparison& found) {
   Image all{3 * ours.width, ours.height, {}};

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compares the errors that images report with their true errors. Renders each gallery scene 96 pixels wide with 20 seeds, first until the
-# reported error is at most 5 %, then until it is at most 2 % (the two targets). Compares every image with a reference that has many times as
-# many samples, and writes the table of tests/statistical/README.md. Finished measurements are kept in FOLDER and not repeated, so an
-# interrupted run continues.
+# Compares the error that `bandsaw render` reports for an image with the true error of the image. Renders each gallery scene 96 pixels wide
+# with 20 seeds, first until the reported error is at most 5 %, then until it is at most 2 % (the two targets). Compares every image with a
+# reference that has many times as many samples, and writes the table of tests/statistical/README.md. Finished measurements are kept in
+# FOLDER and not repeated, so an interrupted run continues.
 # Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--times N] [--seconds S] [--minutes M]
 #   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
 #   --seeds    default 20
@@ -37,8 +37,11 @@ done
 mkdir -p "$folder"
 touch "$folder/done" "$folder/runs" "$folder/left_out" "$folder/references"
 
+# Succeeds if the time of --minutes has passed.
 is_late() { [ -n "$minutes" ] && ((SECONDS >= minutes * 60)); }
+# Prints the number of the field $1 of the JSON object on the standard input.
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
+# Succeeds if the number $1 is less than the number $2.
 least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 
 # Renders a scene until its reported error is at most `target` percent. Prints the samples of all pixels, the reported error, the CPU seconds

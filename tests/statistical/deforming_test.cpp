@@ -20,6 +20,7 @@ using test::Moments;
 using test::SceneMaker;
 using Positions = std::vector<std::array<float, 3>>;
 
+/// Returns a quad whose corners move from `at_open` to `at_close` while the shutter is open.
 Mesh changing_quad(const Positions& at_open, const Positions& at_close) {
   Mesh mesh;
   mesh.positions = at_open;
@@ -58,9 +59,9 @@ std::vector<Moments> pixel_means(const SceneMaker& maker, std::uint32_t width, s
   return means;
 }
 
-// The mesh is a half-plane whose edge moves from x = 5 to x = 15. It covers a point while the edge
-// is to the right of the point. The expected value of a pixel is the mean, over the pixel, of the
-// share of the time for which this holds.
+// The mesh is a half-plane whose edge moves from x = 5 to x = 15. The mesh covers a point while the
+// edge is to the right of the point. The expected value of a pixel is the share of the time for
+// which the mesh covers a point, averaged over the points of the pixel.
 TEST(Deforming, C9_AMovingEdgeIsALinearRamp) {
   constexpr int kWidth = 24;
   const Mesh half = changing_quad({{-100, -9, 0}, {5, -9, 0}, {5, 9, 0}, {-100, 9, 0}},
@@ -100,8 +101,8 @@ TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
   EXPECT_NEAR(sum / 64, 1.0 / 3, 1e-3);  // the mean of t^2
 }
 
-/// Returns the radiance of a white patch at the origin under a lamp, averaged over the time that
-/// the shutter is open.
+/// Returns the radiance of a white patch at the origin, averaged over the time that the shutter is
+/// open. `lamp`: a scene that has only the lamp above the patch.
 Moments under(const SceneMaker& lamp, Technique technique) {
   SceneMaker maker = lamp;
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -131,6 +132,7 @@ constexpr Technique kAllTechniques[] = {Technique::kBoth, Technique::kLightsOnly
 
 // A small square lamp of radiance L = 100 at height h = 2, whose half side grows from 0 to a. The
 // irradiance is the mean over t of L (2 a t)^2 / h^2, with a relative error of at most (a / h)^2.
+// The radiance of the white patch is the irradiance divided by pi.
 TEST(DeformingLight, EmitsInProportionToItsAreaAtEachTime) {
   constexpr float a = 0.05f;
   SceneMaker maker;
@@ -146,7 +148,8 @@ TEST(DeformingLight, EmitsInProportionToItsAreaAtEachTime) {
   }
 }
 
-// A lamp whose vertices are translated equals one that an instance translates.
+// A lamp whose vertices move by a translation gives the same light as a lamp whose instance moves
+// by this translation.
 TEST(DeformingLight, EqualsRigidMotion) {
   const Positions corners = {{-1, 2, -1}, {1, 2, -0.5f}, {0.5f, 2.5f, 1}, {-1, 1.5f, 1}};
   const Vec3 shift = {2, 1, -0.5};

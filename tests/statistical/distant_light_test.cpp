@@ -33,6 +33,8 @@ Ray onto_patch(double tilt) {
   return {.origin = normal * 1e-3, .direction = -normal};
 }
 
+/// Expects that the radiance along the ray is `expected`, within 4 standard errors. The standard
+/// error may be at most 1e-3 of `expected`.
 void expect_radiance(const SceneMaker& maker, const Ray& ray, double expected,
                      const PathOptions& options, std::uint64_t samples = 1024) {
   const Moments radiance = test::radiance_along(*maker.build(), ray, options, samples);
@@ -47,6 +49,7 @@ void set_environment(SceneMaker& maker, ImageTexture image) {
   maker.scene.background.environment = environment;
 }
 
+/// Returns an image whose upper half is white and whose lower half is black.
 ImageTexture half_white() {
   return float_image(1, 2048, [](auto, auto y) { return y < 1024 ? 1.0f : 0.0f; });
 }

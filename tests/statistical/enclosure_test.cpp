@@ -40,7 +40,8 @@ void add(SceneMaker& maker, const Wall& wall, MaterialId material) {
   maker.quad(wall.corner, wall.u, wall.v, material);
 }
 
-/// Returns the mean over all points of a wall of the radiance along its normal.
+/// Returns the radiance that the wall sends along its normal, averaged over the points of the wall.
+/// The moments are over 32 seeds.
 Moments mean_radiance(const Scene& scene, const Wall& wall, const PathOptions& options,
                       std::uint64_t samples) {
   Moments means;
@@ -67,8 +68,8 @@ void expect_mean(const Moments& seen, double expected, double slack = 2e-6) {
 }
 
 /// The ceiling emits the radiance 1. So the radiance of a white wall is the form factor between
-/// this wall and the ceiling. In a cube it is 0.1998 for opposite faces and 0.2000 for adjacent
-/// faces.
+/// this wall and the ceiling. In a cube the form factor is 0.1998 for opposite faces and 0.2000 for
+/// adjacent faces.
 TEST(Enclosure, OfACubeHasItsFormFactors) {
   const std::array<Wall, 6> walls = room(1, 1, 1);
   for (const auto& [receiver, factor] :
@@ -85,7 +86,7 @@ TEST(Enclosure, OfACubeHasItsFormFactors) {
 
 /// A light of intensity I is in the middle of a sphere of radius R. The direct irradiance of the
 /// wall is I / R^2, and interreflection multiplies it by 1 / (1 - rho). The radiance of the wall is
-/// its irradiance times rho / pi. With I = 4 pi, R = 2 and rho = 0.5 it is 1.
+/// its irradiance times rho / pi. With I = 4 pi, R = 2 and rho = 0.5 this radiance is 1.
 TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 2, maker.diffuse(0.5f));
@@ -97,8 +98,8 @@ TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
 }
 
 /// Expects that all surfaces together absorb the light's flux. The surfaces are the walls of a room
-/// and the sides of a block that floats in it. The absorbed flux is the sum of (1 - rho) E A over
-/// them. `albedos`: the albedo of each of the six walls, and then the albedo of the block.
+/// and the sides of a block that floats in the room. The absorbed flux is the sum of (1 - rho) E A
+/// over all surfaces. `albedos`: the albedos of the six walls, and then the albedo of the block.
 void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) {
   SceneMaker maker;
   std::vector<std::pair<Wall, float>> surfaces;
@@ -180,7 +181,9 @@ std::array<double, 6> radiosity(const std::array<Wall, 6>& walls,
     }
   }
   std::vector<double> sent(size, 0);
-  constexpr int kRounds = 60;  // 0.8^60 is 1e-6
+  // No albedo is above 0.8. So each round multiplies the error by at most 0.8, and 0.8^60 is about
+  // 1e-6.
+  constexpr int kRounds = 60;
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < size; ++i) {
       double arrives = 0;

@@ -1,7 +1,7 @@
-// In some scenes, the light after any number of bounces has a closed form. The tests compare the
-// means in these scenes with the closed form. In other scenes, they compare light sampling, BSDF
-// sampling and MIS, which must have the same mean. All means must lie within 4 standard errors. An
-// id such as O6 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Compares the light after many bounces with a closed form, in scenes that have a closed form. In
+// other scenes, expects that light sampling, BSDF sampling and MIS of both have the same mean. All
+// means must lie within 4 standard errors. An id such as O6 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,8 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
+/// Expects that the mean is `expected` within 4 standard errors. `relative_error`: the largest
+/// standard error that is accepted, relative to `expected`.
 void expect_value(const Moments& radiance, double expected, double relative_error) {
   EXPECT_LE(std::abs(radiance.z(expected)), 4)
       << "is " << radiance.mean() << " +- " << radiance.standard_error() << ", expected "

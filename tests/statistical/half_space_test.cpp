@@ -6,9 +6,9 @@
 //   H(mu) = exp(-mu / pi * integral over x in [0, pi / 2] of f(x))
 //   f(x) = ln(1 - albedo * x * cot(x)) / (cos(x)^2 + mu^2 sin(x)^2)
 //
-// H is from Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119; it was
-// integrated to 20 digits. Rounding the albedos to floats changes R by less than 1e-7 of R. An id
-// such as V3 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// H is from Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119. The
+// integral in H was computed to 20 digits. Rounding the albedos to floats changes R by less than
+// 1e-7 of R. An id such as V3 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

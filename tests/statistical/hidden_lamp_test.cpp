@@ -1,6 +1,6 @@
-// Compares lamps that the camera does not see and that stop no light (Emissive::hidden) with closed
-// forms, within 4 standard errors of 32 seeds. After a correct change of the sampling, a test fails
-// with a probability of about 1 / 2 700.
+// Compares the light of hidden lamps with closed forms, within 4 standard errors over 32 seeds. The
+// camera does not see a hidden lamp (Emissive::hidden), and the lamp stops no light. After a
+// correct change of the sampling, a test fails with a probability of about 1 / 2 700.
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,7 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
+/// Adds the material of a hidden lamp that emits to one side, and returns its id.
 MaterialId hidden_lamp(SceneMaker& maker, float radiance) {
   const MaterialId id = maker.lamp(radiance, /*one_sided=*/true);
   std::get<Emissive>(maker.scene.materials[index_of(id)].kind).hidden = true;
@@ -50,7 +51,8 @@ TEST(HiddenLamp, LightsASurfaceLikeAVisibleLamp) {
 TEST(HiddenLamp, StopsNoLightOfTheSkyOrOfOtherLamps) {
   SceneMaker maker;
   add_square(maker, hidden_lamp(maker, 1));
-  // Twice the size at twice the distance gives the same irradiance.
+  // A square of twice the size at twice the distance gives the same irradiance per radiance. The
+  // two squares have the radiances 1 and 2, so together they give 3 times kOfSquare.
   maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, hidden_lamp(maker, 2));
   maker.background({0.5F, 0.5F, 0.5F}, {0.5F, 0.5F, 0.5F});
   expect_irradiance(maker, 3 * kOfSquare + 0.5 * kPi);

@@ -43,7 +43,8 @@ ImageTexture image_of(const std::vector<float>& values) {
   return image;
 }
 
-/// Returns the mean albedo; rows of equal angle do not have equal area.
+/// Returns the mean albedo over the area of the sphere. The rows of the texture have equal angles
+/// but not equal areas.
 double area_mean(const std::vector<float>& values) {
   double sum = 0;
   for (std::uint32_t y = 0; y < kRows; ++y) {
@@ -75,8 +76,8 @@ LitSphere lit_sphere(const std::vector<float>& values) {
   return {maker.build(), flux / (4 * kPi * (1 - area_mean(values)))};
 }
 
-/// Returns the ray from the middle to the centre of a texel: u counts from -x over +z, as
-/// geometry/surface.h defines.
+/// Returns the ray from the middle of the sphere to the centre of texel (x, y). The texture's u
+/// begins at -x and turns towards +z, as geometry/surface.h defines.
 Ray toward_texel(std::uint32_t x, std::uint32_t y) {
   const double theta = kPi * (y + 0.5) / kRows;
   const double phi = 2 * kPi * (x + 0.5) / kColumns;
@@ -85,6 +86,8 @@ Ray toward_texel(std::uint32_t x, std::uint32_t y) {
                         std::sin(theta) * std::sin(phi)}};
 }
 
+/// Expects that the mean is `expected` within 4 standard errors. The standard error may be at most
+/// 1e-3 of `expected`.
 void expect_mean(const test::Moments& seen, double expected) {
   EXPECT_LE(std::abs(seen.z(expected)), 4)
       << seen.mean() << " +- " << seen.standard_error() << ", expected " << expected;

@@ -1,5 +1,6 @@
-// Lights out of focus are seen as disks, whose brightness is the share of the lens from which the
-// light is visible. The mean is the same with and without light sampling through the lens.
+// Tests lights that are out of focus. Such a light is seen as a disk. The radiance of the disk is
+// the radiance of the light times the share of the lens from which the light is visible. The mean
+// is the same with and without light sampling through the lens.
 
 #include <gtest/gtest.h>
 
@@ -52,6 +53,8 @@ Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x,
   return means;
 }
 
+/// Expects that the mean is `expected` within 4 standard errors. `relative_error`: the largest
+/// standard error that is accepted, relative to `expected`.
 void expect_value(const Moments& radiance, double expected, double relative_error) {
   EXPECT_NEAR(radiance.mean(), expected, 4 * radiance.standard_error() + 1e-6 * expected);
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
@@ -147,7 +150,8 @@ TEST(Lens, HiddenLampsBeyondTheFocusAreNotSeen) {
   EXPECT_EQ(seen(maker, camera(0.4), 10, 10, Technique::kLightSampling, 256).mean(), 0);
 }
 
-/// A closed room, in which pixels reuse paths.
+/// Returns a closed room with two lamps. In such a scene the pixels of a group share parts of their
+/// paths (path reuse).
 SceneMaker room() {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);

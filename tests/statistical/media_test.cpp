@@ -1,6 +1,6 @@
-// Compares media with closed forms and quadratures, within 4 standard errors or, if there is no
-// noise, to the precision of a float. An id such as V6 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Compares the light in media (smoke, fog) with closed forms and quadratures. A value may differ by
+// at most 4 standard errors. A value without noise may differ only by the rounding to float. An id
+// such as V6 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -19,6 +19,8 @@ using test::medium;
 using test::Moments;
 using test::SceneMaker;
 
+/// Expects that the mean is `expected` within 4 standard errors. `relative_error`: the largest
+/// standard error that is accepted, relative to `expected`.
 void expect_value(const Moments& radiance, double expected, double relative_error) {
   EXPECT_LE(std::abs(radiance.mean() - expected), 4 * radiance.standard_error() + 2e-6 * expected)
       << "is " << radiance.mean() << " +- " << radiance.standard_error() << ", expected "
@@ -26,6 +28,7 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
+/// Returns the radiance along the ray by a single sample, for scenes without noise.
 double one_sample(const Scene& scene, const Ray& ray, const PathOptions& options = {}) {
   PathCounts counts;
   return path_radiance(scene, ray, PixelSampler(3, 1, 2), 0, options, counts).g;
@@ -62,7 +65,7 @@ TEST(Media, V6AbsorptionIsExponential) {
 }
 
 /// First the camera is in the middle of a ball of smoke, and the light is inside of the ball, on
-/// its boundary or outside. Then both are in endless fog. The expected transmittance is
+/// its boundary or outside. Then camera and light are in endless fog. The expected transmittance is
 /// exp(-0.5 d), where d is the length of the camera ray in the medium.
 TEST(Media, V7AroundTheCameraAttenuateALight) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
@@ -297,7 +300,8 @@ TEST(Media, V9InAGlassBallAbsorbBetweenReflections) {
   test::report_hard_case("V9", "medium in a glass ball: light within 4 SE of the closed form");
 }
 
-/// A room with a light, a floor and two nested smokes, coloured and anisotropic, with fog around.
+/// Returns a scene with a floor, two lamps, and a ball of smoke inside a box of smoke. The smoke is
+/// anisotropic, and the smoke of the box is coloured. `with_fog`: fog fills the rest of space.
 std::shared_ptr<const Scene> smoky_room(bool with_fog) {
   SceneMaker maker;
   maker.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, maker.diffuse(0.6f));

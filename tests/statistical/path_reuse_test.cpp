@@ -1,7 +1,7 @@
-// Path reuse between pixels (renderlib/integrate/path_reuse.h) has the same means as path tracing
-// without it: the difference is at most 4 standard errors. The scene is a Cornell box in which the
-// pixels see different surfaces, and parts of the box are occluded from some of them.
-// integrating_sphere_test.cpp compares with a closed form.
+// With path reuse (renderlib/integrate/path_reuse.h), pixels share the second vertices of their
+// paths. Tests that the means are the same as without path reuse, within 4 standard errors. The
+// scene is a Cornell box in which the pixels see different surfaces. Some pixels do not see all
+// parts of the box. integrating_sphere_test.cpp compares path reuse with a closed form.
 
 #include <gtest/gtest.h>
 
@@ -60,9 +60,9 @@ TEST(PathReuse, MeansEqualPathTracingBehindFuzzyMetalAndGlass) {
   expect_equal_means(*box, rays_across(60, 440, 240), {.max_depth = 4}, 0.03);
 }
 
-// The path of a pixel that shows a black surface ends there, so this pixel shares no vertex. The
-// balance heuristic of the other pixels must not count the pdf of this pixel; otherwise they would
-// lose light.
+// The path of a pixel that shows a black surface ends on this surface, so the pixel shares no
+// vertex. The balance heuristic of the other pixels must not count the pdf of this pixel. If it
+// did, the other pixels would lose light.
 TEST(PathReuse, MeansEqualPathTracingBesideABlackSurface) {
   test::SceneMaker maker = test::cornell_box();
   maker.sphere({150, 240, 200}, 90, maker.diffuse(0.0f));

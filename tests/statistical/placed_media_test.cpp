@@ -15,8 +15,8 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// Returns a scene of a ball of radius 1, filled with the medium, under a white sky. The ball moves
-/// from one placement to the other while the shutter is open, from time 0 to 1, and is mirrored.
+/// Returns a scene of a ball of radius 1, filled with the medium, under a white sky. The ball is
+/// mirrored. Its placement changes from `from` to `to` while the shutter is open, from time 0 to 1.
 SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transform& to) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
@@ -50,6 +50,8 @@ Moments seen_along(const Scene& scene, Ray ray, std::uint64_t samples) {
   return means;
 }
 
+/// Expects that the mean is `expected` within 4 standard errors. The standard error may be at most
+/// 1e-3 of `expected`.
 void expect_mean(const Moments& seen, double expected) {
   EXPECT_NEAR(seen.mean(), expected, 4 * seen.standard_error() + 2e-6 * expected);
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
@@ -64,9 +66,10 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
 
-// A ball moves through the ray, and the y of its centre goes from -2 to 2. The ball transmits
-// exp(-2 s sqrt(1 - y^2)) while |y| < 1; otherwise the ray misses it. The expected value is the
-// mean over y. The integral over |y| < 1 is computed by Simpson's rule in the angle a, y = cos(a).
+// A ball moves through the ray, and the y of its centre goes from -2 to 2. While |y| < 1, the ball
+// transmits exp(-2 s sqrt(1 - y^2)). At other times the ray misses the ball. The expected value is
+// the mean over y. The integral over |y| < 1 is computed by Simpson's rule in the angle a, where
+// y = cos(a).
 TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

@@ -81,8 +81,8 @@ TEST(PolygonLight, APartlyOccludedLightCountsByItsVisiblePart) {
 }
 
 TEST(PolygonLight, X9AnInstanceEmitsAccordingToItsPlacedArea) {
-  const double expected = 1.740839502734;
-  for (const int n : {1, 8}) {  // few lights, and many
+  const double expected = 1.740839502734;  // of a square of side 2 at height 1
+  for (const int n : {1, 8}) {             // few lights, and many
     for (const double scale : {1e-3, 1e3}) {
       SceneMaker maker;
       Mesh mesh = test::grid(n);

@@ -24,8 +24,8 @@ test::SceneMaker floor_under_sky() {
   return maker;
 }
 
-/// Expects the radiance along kDown by each technique, within 4 standard errors plus 1e-3 of its
-/// value.
+/// Expects that each technique measures the radiance `radiance` along kDown, within 4 standard
+/// errors plus 1e-3 of `radiance`.
 void expect_radiance(const Scene& scene, const Portals& portals, double radiance) {
   for (const Technique technique :
        {Technique::kBoth, Technique::kLightsOnly, Technique::kScatteringOnly}) {
@@ -36,7 +36,8 @@ void expect_radiance(const Scene& scene, const Portals& portals, double radiance
   }
 }
 
-/// Two portals above the floor, which overlap as seen from its middle, and one far beside it.
+/// Returns two portals above the floor, and one portal far to the side. Seen from the middle of the
+/// floor, the two portals above the floor overlap.
 const Portals& some_portals() {
   static const Portals portals({{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}},
                                 {{0, 3, 0}, {4, 0, 0}, {0, 0, 4}},
@@ -51,15 +52,15 @@ TEST(PortalsInScenes, AUniformSkyHasItsClosedForm) {
 }
 
 TEST(PortalsInScenes, AGradientHasItsClosedForm) {
-  // The radiance in direction d is (1 + d.y) / 2 times that of the top. The cosine-weighted mean of
-  // d.y is 2/3.
+  // In direction d the sky has (1 + d.y) / 2 times the radiance 3 of its top. The cosine-weighted
+  // mean of d.y is 2/3, and the floor reflects 1/2.
   test::SceneMaker maker = floor_under_sky();
   maker.background({0, 0, 0}, {3, 3, 3});
   expect_radiance(*maker.build(), some_portals(), 0.5 * 3 * (1 + 2.0 / 3) / 2);
 }
 
 TEST(PortalsInScenes, AnEnvironmentHasTheSameMeanWithAndWithoutPortals) {
-  // One texel of the upper half is much brighter than the others, and seen through a portal.
+  // One texel of the upper half is much brighter than the others. It is seen through a portal.
   test::SceneMaker maker = floor_under_sky();
   maker.scene.background.environment = Environment{
       .images = {maker.texture({test::float_image(16, 8, [](std::uint32_t x, std::uint32_t y) {

@@ -1,8 +1,8 @@
 // Tests that adaptive sampling is unbiased in scenes in which few paths find light. In such scenes
-// the estimated noise of a pixel depends on whether the pixel has found light. Adaptive sampling
-// plans the samples of each half tile (half of the pixels of a tile). The tests take 64 seeds
-// and accept a bias of at most 3 standard errors. Hard case A5 tests adaptive sampling of Bernoulli
-// pixels, without a scene.
+// the estimated noise of a pixel depends on whether the pixel has found light. The image is divided
+// into tiles, and adaptive sampling plans the number of samples of each half tile (half of the
+// pixels of a tile). The tests take 64 seeds and accept a bias of at most 3 standard errors. The
+// hard case A5 tests adaptive sampling without a scene, with pixels whose samples are 0 or 1.
 
 #include <gtest/gtest.h>
 
@@ -43,6 +43,8 @@ struct Rendered {
   bool planned = false;  ///< some tiles took more samples than others
 };
 
+/// Renders the scene. If `adaptive` is false, every pixel takes 256 samples. Otherwise the half
+/// tiles take different numbers of samples after the first 64 samples of every pixel.
 Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
   static const std::atomic<bool> kGoOn{false};
   Pool pool(1);
@@ -78,6 +80,7 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
   return rendered;
 }
 
+/// Expects that the mean over all seeds is the same with and without adaptive sampling.
 void expect_unbiased(const SceneMaker& maker) {
   const auto scene = maker.build();
   Moments even;
@@ -92,7 +95,7 @@ void expect_unbiased(const SceneMaker& maker) {
   EXPECT_GT(planned, kSeeds / 4) << "more seeds should get a plan that is not even";
   const double error = std::hypot(even.standard_error(), adaptive.standard_error());
   EXPECT_LE(std::abs(adaptive.mean() - even.mean()), 3 * error)
-      << adaptive.mean() << " against " << even.mean() << ", both +- " << error;
+      << "adaptive " << adaptive.mean() << ", even " << even.mean() << ", difference +- " << error;
   EXPECT_LE(error, 0.05 * even.mean());
 }
 

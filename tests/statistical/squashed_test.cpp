@@ -35,6 +35,7 @@ SceneMaker white_sky() {
   return maker;
 }
 
+/// Returns an instance of group 0, a ball of radius 1.
 Instance ball(const Transform& to_world, MaterialId material) {
   Instance instance;
   instance.group = GroupId{0};
@@ -43,11 +44,13 @@ Instance ball(const Transform& to_world, MaterialId material) {
   return instance;
 }
 
+/// Adds a ball of glass with the placement `to_world`.
 void add_glass(SceneMaker& maker, const Transform& to_world) {
   maker.scene.geometry.groups.push_back(unit_ball());
   maker.scene.geometry.instances.push_back(ball(to_world, maker.glass(1.5)));
 }
 
+/// Adds a ball of the medium, with an invisible surface and the placement `to_world`.
 void fill(SceneMaker& maker, const Transform& to_world, const Medium& medium) {
   Geometry& boundaries = maker.scene.media.boundaries;
   boundaries.groups.push_back(unit_ball());
@@ -123,10 +126,10 @@ TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
   test::at_most("S12", "error of the transmittance of absorbing balls", error.value(), 1e-4);
 }
 
-/// A ray through the middle of the ball meets it as a pane with parallel faces, perpendicularly.
-/// Each face reflects the share F = 0.04; of the light that crosses the glass once, the share a =
-/// exp(-0.8) is not absorbed. The sky is white on both sides, so the radiance is the sum of what
-/// the pane reflects and transmits: F + (1 - F)^2 a (1 + F a) / (1 - F^2 a^2).
+/// For a ray through its middle, the ball is a pane with parallel faces, which the ray meets
+/// perpendicularly. Each face reflects the share F = 0.04. Of the light that crosses the glass
+/// once, the share a = exp(-0.8) is not absorbed. The sky is white on both sides, so the radiance
+/// is the sum of what the pane reflects and transmits: F + (1 - F)^2 a (1 + F a) / (1 - F^2 a^2).
 TEST(Squashed, S12_AbsorbingGlassIsAPaneInItsMiddle) {
   for (const double by : kThin) {
     const Transform to_world = rotation({1, 2, 3}, 40) * scaling({1, by, 2});
