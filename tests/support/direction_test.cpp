@@ -56,7 +56,7 @@ void expect_samples_match_density(absl::FunctionRef<Vec3(double, double)> sample
   std::uint64_t lost = 0;
   for (int i = 0; i < kSamples; ++i) {
     const double u = random.uniform();
-    const Vec3 d = sample(u, random.uniform());  // a unit vector, or zero: lost
+    const Vec3 d = sample(u, random.uniform());  // a unit vector; zero if the sample is lost
     if (d == Vec3{}) {
       ++lost;
       continue;

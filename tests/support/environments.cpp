@@ -1,4 +1,4 @@
-// Images of one float channel whose texels a function gives, mostly for environment maps.
+// Makes images of one float channel, mostly for environment maps. A function gives each texel.
 
 #include "tests/support/environments.h"
 

@@ -11,7 +11,9 @@
 namespace bandsaw::test {
 
 FullDisk::FullDisk(std::uint64_t bytes) {
-  std::signal(SIGXFSZ, SIG_IGN);  // the write fails; otherwise this signal would end the process
+  // A write beyond the limit sends SIGXFSZ, which would end the process. If the signal is ignored,
+  // only the write fails.
+  std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
   BANDSAW_CHECK(::getrlimit(RLIMIT_FSIZE, &limit) == 0, "a process may read its limits");
   before_ = limit.rlim_cur;

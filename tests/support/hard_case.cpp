@@ -13,6 +13,7 @@
 namespace bandsaw::test {
 namespace {
 
+/// Returns the number with three significant digits.
 std::string text(double number) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.3g", number);
@@ -26,6 +27,7 @@ std::string here() {
   return tests == std::string::npos ? file : file.substr(tests + 1);
 }
 
+/// Prints the line of the hard case `id`, with the file of the running test.
 void print(std::string_view id, const std::string& figure) {
   std::cout << "[ case " << id << " ] " << here() << " | " << figure << std::endl;
 }

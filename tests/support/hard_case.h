@@ -9,10 +9,10 @@
 
 namespace bandsaw::test {
 
-/// Fails unless `figure` <= `limit`; NaN fails. `id`: the id of the hard case in cases.txt, such as
-/// "S1". `what`: description of the figure.
+/// Expects that `figure` <= `limit`, and prints both. A NaN fails. `id`: the id of the hard case in
+/// cases.txt, such as "S1". `what`: description of the figure.
 void at_most(std::string_view id, std::string_view what, double figure, double limit);
-/// Fails unless `figure` >= `limit`; NaN fails.
+/// Expects that `figure` >= `limit`, and prints both. A NaN fails.
 void at_least(std::string_view id, std::string_view what, double figure, double limit);
 /// Prints a property of the hard case `id` that the test has asserted, with the count: "no leak of
 /// 20,000 rays". Not printed if the test has failed.

@@ -61,7 +61,8 @@ std::optional<HttpAnswer> http_call(int port, const HttpCall& call) {
     request.set(name, value);
   }
   beast::error_code error;
-  // A server may respond before it has read the whole request; then the response counts.
+  // A server may respond before it has read the whole request. Then writing may fail, but the
+  // response counts.
   if (server.connected()) {
     http::write(server.socket(), request, error);
   }

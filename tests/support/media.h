@@ -12,6 +12,7 @@ inline Medium medium(float absorption, float scattering, double g = 0) {
   return {.absorption = gray(absorption), .scattering = gray(scattering), .g = g};
 }
 
+/// Adds the medium to the scene and returns its id.
 inline MediumId add(SceneMaker& maker, const Medium& medium) {
   maker.scene.media.media.push_back(medium);
   return MediumId{static_cast<std::uint32_t>(maker.scene.media.media.size() - 1)};
@@ -27,7 +28,8 @@ inline void fill_sphere(SceneMaker& maker, const Vec3& center, double radius, Me
   maker.scene.media.boundaries.spheres.push_back({center, radius, filled_with(inside)});
 }
 
-/// Fills a mesh, which MUST be closed, with a medium; its surface is invisible.
+/// Fills a mesh, which MUST be closed, with the medium `inside`. The surface of the mesh is
+/// invisible.
 inline void fill_mesh(SceneMaker& maker, Mesh mesh, const Transform& to_world, MediumId inside) {
   Geometry& boundaries = maker.scene.media.boundaries;
   const MeshId id{static_cast<std::uint32_t>(boundaries.meshes.size())};
@@ -35,6 +37,8 @@ inline void fill_mesh(SceneMaker& maker, Mesh mesh, const Transform& to_world, M
   boundaries.instances.push_back({id, filled_with(inside), to_world});
 }
 
+/// Fills the box from `low` to `high` with the medium `inside`. The surface of the box is
+/// invisible.
 inline void fill_box(SceneMaker& maker, const Vec3& low, const Vec3& high, MediumId inside) {
   fill_mesh(maker, unit_cube(), translation(low) * scaling(high - low), inside);
 }

@@ -36,7 +36,8 @@ class Splitter {
 }  // namespace
 
 Mesh icosphere(int levels) {
-  const double g = (1 + std::sqrt(5.0)) / 2;  // golden ratio: the corners of an icosahedron
+  // The coordinates of an icosahedron's corners are 0, ±1 and ± the golden ratio g.
+  const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Vec3> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                               {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                               {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};

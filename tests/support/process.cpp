@@ -58,6 +58,7 @@ struct Process::State {
 
 namespace {
 
+/// Returns pointers to the strings and a final null pointer, as posix_spawn() takes them.
 std::vector<char*> pointers(std::vector<std::string>& strings) {
   std::vector<char*> out;
   for (std::string& s : strings) {

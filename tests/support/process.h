@@ -17,9 +17,9 @@ class Process {
  public:
   using Milliseconds = std::chrono::milliseconds;
 
-  /// Starts the program argv[0], a path that MUST exist; standard input is empty. `environment`:
-  /// entries "NAME=value", added to the test's own environment; they replace variables of the same
-  /// name.
+  /// Starts the program argv[0], a path that MUST exist. Its standard input is empty.
+  /// `environment`: entries "NAME=value" that are added to the environment of the test. An entry
+  /// replaces the test's variable of the same name.
   static Process start(std::vector<std::string> argv, std::vector<std::string> environment = {});
   Process(Process&&) noexcept;
   Process& operator=(Process&&) noexcept;

@@ -34,8 +34,8 @@ Box bounds(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   return box;
 }
 
-/// Conservative test of a ray against a box up to the distance `bound`. The margin of 2^-30 is far
-/// larger than rounding errors, so no box that is hit is skipped.
+/// Returns false if the ray surely misses the box up to the distance `bound`. The margin of 2^-30
+/// is far larger than rounding errors, so a box that is hit always gives true.
 bool may_meet(const Box& box, const TracedRay& ray, double bound) {
   const double lo[3] = {box.lo.x, box.lo.y, box.lo.z};
   const double hi[3] = {box.hi.x, box.hi.y, box.hi.z};

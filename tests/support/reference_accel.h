@@ -21,7 +21,8 @@ class ReferenceAccel {
   /// `geometry` MUST outlive this object. `brute_force`: every primitive is tested, without trees.
   explicit ReferenceAccel(const Geometry& geometry, bool brute_force = false);
 
-  /// Returns Hit{}, which converts to false, if the ray hits nothing or cannot be traced.
+  /// Returns the closest hit. Of several hits at the same distance, returns the one with the lowest
+  /// id. Returns Hit{}, which converts to false, if the ray hits nothing or cannot be traced.
   Hit closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const { return static_cast<bool>(closest(ray)); }
 

@@ -11,7 +11,8 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Approximate slow-down by the sanitizer; long tests divide their amount of work by it.
+/// Approximate factor by which the sanitizer slows a test down. Long tests divide their amount of
+/// work by this factor.
 inline constexpr int kSlower = kSanitized ? 8 : 1;
 
 }  // namespace bandsaw::test

@@ -10,6 +10,7 @@
 namespace bandsaw::test {
 namespace {
 
+/// Appends the value to the list and returns its index as an id.
 template <class Id, class T>
 Id append(std::vector<T>& list, T value) {
   list.push_back(std::move(value));
@@ -17,7 +18,7 @@ Id append(std::vector<T>& list, T value) {
 }
 
 /// Adds the sides and the top of a box, without its floor. `corner`: a corner of the floor; `u`,
-/// `v`: the edges of the floor from there, both horizontal.
+/// `v`: the edges of the floor from this corner, both horizontal.
 void add_block(SceneMaker& maker, const Vec3& corner, const Vec3& u, const Vec3& v, double height,
                MaterialId material) {
   const Vec3 up{0, height, 0};

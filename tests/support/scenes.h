@@ -9,8 +9,8 @@
 
 namespace bandsaw::test {
 
-/// Collects a scene. The returned ids are valid only in the scene of the object that returned them.
-/// A reflectance or radiance that is one number is grey. Angles are in degrees.
+/// Collects the parts of a scene. An id that a call returns is valid only in the scene of the same
+/// SceneMaker. A reflectance or radiance that is one number is grey. Angles are in degrees.
 class SceneMaker {
  public:
   TextureId texture(Texture texture);
@@ -26,13 +26,14 @@ class SceneMaker {
   void sphere(const Vec3& center, double radius, MaterialId material);
   void quad(const Vec3& corner, const Vec3& u, const Vec3& v, MaterialId material);
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material);
+  /// Adds the mesh and one instance of it.
   void instance(Mesh mesh, const Transform& to_world, MaterialId material);
   void camera(const Vec3& position, const Vec3& look_at, double vertical_fov);
   void background(const Rgb& bottom, const Rgb& top);
 
   SceneDescription scene;  ///< for parts that have no call here
 
-  /// The scene MUST be valid; otherwise the program is aborted.
+  /// Builds the scene, which MUST be valid; otherwise the program is aborted.
   std::shared_ptr<const Scene> build() const;
 };
 

@@ -30,8 +30,9 @@ class Moments {
 };
 
 /// Result of Pearson's chi-squared test of counts against expected counts with the same sum. All
-/// cells with an expected count below 5 are pooled into one. If this cell has an expected count
-/// below 5 too, it is left out. If it then has more than 20 counts, the statistic is infinite.
+/// cells with an expected count below 5 are pooled into one cell. If the expected count of the
+/// pooled cell is below 5 too, the pooled cell is left out. If a pooled cell that is left out has
+/// more than 20 counts, the statistic is infinite.
 struct ChiSquared {
   double statistic = 0;
   int degrees = 0;  ///< of freedom
@@ -39,12 +40,12 @@ struct ChiSquared {
   /// and Hilferty 1931).
   double p_value = 1;
 };
-/// `counts` and `expected` have one number for each cell.
+/// Runs the test. `counts` and `expected` have one number for each cell.
 ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
                        const std::vector<double>& expected);
 
-/// Returns the significance level for each of `tests` independent tests. With it, the probability
-/// of at least one false alarm in all of these tests is `level` (Sidak 1967).
+/// Returns the significance level that each of `tests` independent tests must have, so that the
+/// probability of at least one false alarm among all of them is `level` (Sidak 1967).
 double sidak(double level, std::size_t tests);
 
 }  // namespace bandsaw::test

@@ -13,6 +13,7 @@ class TempDir {
   TempDir(const TempDir&) = delete;
   TempDir& operator=(const TempDir&) = delete;
   const std::string& path() const { return path_; }
+  /// Returns the path of the file `name` in this folder.
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
  private:

@@ -1,8 +1,8 @@
 // A stand-in for the library OpenImageDenoise, version 2, for tests: it has the functions that
 // coordinator/cli/image/oidn.cpp calls. Its "filter" returns (color + albedo) / 2 + normal / 4, so
-// that a test sees which images the filter got. A width of 13 pixels is an error, to test errors.
-// The numbers are those of oidn.h: device type 1 is the CPU, format 3 is three floats, error 2 is
-// an invalid argument.
+// that a test sees which images the filter got. To test how errors are handled, an image of 13
+// pixels in width fails. The numbers are those of oidn.h: device type 1 is the CPU, format 3 is
+// three floats, error 2 is an invalid argument.
 
 #include <cstddef>
 #include <cstring>
