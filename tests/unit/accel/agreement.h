@@ -1,7 +1,7 @@
 #pragma once
 
-// For tests: compares Accel with ReferenceAccel (brute force, or a simple BVH in double) on the
-// same rays.
+// Compares Accel, the renderer's BVH, with ReferenceAccel (brute force, or a simple BVH in double)
+// on the same rays, for tests.
 
 #include <gtest/gtest.h>
 
@@ -86,8 +86,8 @@ inline Vec3 random_point_in(const Box& box, Random& random) {
 }
 
 /// Returns a ray that starts in or around `box`, the bounding box of the mesh. It aims at a corner,
-/// an edge or a face of the mesh, or at any point of the box. The length of its direction is the
-/// distance to this target, or 2^-37 of it.
+/// an edge or a face of the mesh, or at any point of the box. The length of the ray's direction is
+/// the distance from the origin to this target, or 2^-37 of the distance.
 inline Ray aimed_ray(const Mesh& mesh, const Box& box, Random& random) {
   const Box around = {box.lo * 2 - box.hi, box.hi * 2 - box.lo};
   const bool within = random.below(2) == 0;

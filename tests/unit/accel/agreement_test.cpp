@@ -1,8 +1,7 @@
 // Tests that Accel finds the same hits as brute force and as a simple BVH in double, bit for bit.
-// The tests use meshes of many kinds, and different numbers of threads that build the BVH. An id
-// such as B4 in a test's name is that of a case in tests/hard_cases/cases.txt. "As by testing all"
-// in the reported figure of a case means: with the same result as brute force, which tests all
-// primitives.
+// The tests use meshes of many kinds, and different numbers of threads that build the BVH. Brute
+// force tests all primitives. An id such as B4 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "tests/unit/accel/agreement.h"
 #include "tests/support/hard_case.h"
@@ -49,6 +48,7 @@ Mesh repeated(Mesh mesh, int times) {
   return mesh;
 }
 
+/// Returns the mesh with its y coordinates multiplied by `by`.
 Mesh flattened(Mesh mesh, float by) {
   for (auto& p : mesh.positions) {
     p[1] *= by;

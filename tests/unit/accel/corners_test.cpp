@@ -1,5 +1,5 @@
-// A hit on a mesh points to the triangle's corners as the BVH stores them, so that they need not be
-// looked up. These corners equal those of the mesh, to the bit.
+// A hit on a mesh has a pointer to the corners of the hit triangle, which are stored in the BVH. So
+// the corners need not be looked up in the mesh. The stored corners equal the mesh's, to the bit.
 
 #include <gtest/gtest.h>
 

@@ -53,6 +53,7 @@ Mesh mesh_at(const Mesh& mesh, double time) {
   return still;
 }
 
+/// Returns a scene of the mesh alone, with the shutter interval kShutter.
 Geometry of_mesh(Mesh mesh) {
   Geometry g;
   g.shutter = kShutter;
@@ -173,6 +174,7 @@ TEST(Deforming, EqualsBruteForceInInstances) {
 TEST(Deforming, DoesNotLeakAtAnyTime) {
   Pool pool(1);
   Random random(4);
+  // Returns how many of `count` rays miss the mesh, whose middle is at `at`.
   const auto lost = [&](const Mesh& mesh, const Vec3& at, double size, int count) {
     const Geometry g = of_mesh(mesh);
     const Accel accel = Accel::build(g, pool);

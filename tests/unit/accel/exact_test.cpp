@@ -1,7 +1,6 @@
-// Compares Accel with brute force, to the bit, in hard cases: ties, borders, planes, extreme shapes
-// and rays. An id such as T5 in a test's name is that of a case in tests/hard_cases/cases.txt. "As
-// by testing all" in the reported figure of a case means: with the same result as brute force,
-// which tests all primitives.
+// Compares Accel, the renderer's BVH, to the bit with brute force, which tests all primitives. The
+// cases are hard: ties, borders, planes, extreme shapes and rays. An id such as T5 in a test's name
+// is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +17,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns a scene of one instance of the mesh, without a transform.
 Geometry of_mesh(Mesh mesh) {
   Geometry g;
   g.meshes.push_back(std::move(mesh));

@@ -1,6 +1,7 @@
-// Tests the float filters of the BVH, which reject packs of eight triangles, spheres or boxes
-// before the exact test in double. A filter must never reject what the test in double hits, and
-// must give the same lanes with every implementation of Float8.
+// Tests the float filters of the BVH. A filter tests eight triangles, spheres or boxes at once, one
+// in each lane of a Float8 (a vector of eight floats). The exact test in double follows only for
+// the lanes that the filter does not reject. A filter must never reject what the test in double
+// hits, and must give the same lanes with every implementation of Float8.
 
 #include <cmath>
 

@@ -16,6 +16,7 @@ namespace {
 
 using test::Random;
 
+/// Returns `count` random shapes of each kind: spheres, quads, triangles and disks.
 Shapes mixed_shapes(int count, std::uint64_t seed) {
   Random random(seed);
   Shapes shapes;
@@ -30,6 +31,7 @@ Shapes mixed_shapes(int count, std::uint64_t seed) {
   return shapes;
 }
 
+/// Returns an instance of the group with index `group`.
 Instance of_group(std::uint32_t group, const Transform& to_world) {
   Instance instance;
   instance.group = GroupId{group};
@@ -107,6 +109,7 @@ TEST(Group, AllSurfacesAlongARayAreHitInOrder) {
   for (Hit hit = accel.closest(ray); hit; hit = accel.closest_after(ray, hit)) {
     met.push_back(5 - hit.t);
   }
+  // The ray meets the ellipsoid twice, the disk once and the small sphere twice.
   ASSERT_EQ(met.size(), 5u);
   const double large = 2 * std::sqrt(0.99);
   const double small = std::sqrt(0.0625 - 0.01);

@@ -1,7 +1,6 @@
 // Hard cases of BVHs: an empty scene, many equal triangles, and triangles of which each is half as
-// large as the one before. An id such as B8 in a test's name is that of a case in
-// tests/hard_cases/cases.txt. "As by testing all" in the reported figure of a case means: with the
-// same result as brute force, which tests all primitives.
+// large as the one before. One test compares the hits with those of brute force, which tests all
+// primitives. An id such as B8 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <cmath>
 #include <limits>
@@ -52,6 +51,7 @@ TEST(HardCases, B7_HitsOnTrianglesOfHalvingSizesEqualBruteForce) {
     return Ray{{2, y, random.uniform() * size / 2}, {-1, 0, 0}};
   });
   EXPECT_EQ(agreement.different, 0);
+  // compare() traces 3,000 rays, and two more rays after each of them that hits something.
   EXPECT_GT(agreement.hits, 3000);
   report_hard_case("B7", "3,000 rays at triangles of 120 sizes: hits equal brute force");
 }

@@ -1,5 +1,6 @@
-// Instances: mirrored, stretched, at every scale, coincident, and with a placement that has no
-// inverse. An id such as X1 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Tests the hits on instances of meshes. Instances are mirrored, stretched or coincident, have very
+// different scales, or have a placement without an inverse. An id such as X1 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,7 @@ Mesh smooth_sphere(int levels) {
   return mesh;
 }
 
+/// Returns a scene of one instance of the mesh.
 Geometry placed(const Mesh& mesh, const Transform& to_world) {
   Geometry g;
   g.meshes.push_back(mesh);
@@ -176,7 +178,7 @@ TEST(Instance, B11_BoxesContainTheirInstances) {
     for (const auto& p : mesh.positions) {
       const Vec3 corner = to_world.point({p[0], p[1], p[2]});
       const Vec3 middle = to_world.point({0, 0, 0});
-      // The mesh is closed around its origin, so a ray from there must hit it.
+      // The mesh is closed around its middle, so a ray from the middle must hit the mesh.
       ASSERT_TRUE(accel.closest({middle, corner - middle}));
       ASSERT_TRUE(accel.occluded({middle, corner - middle}));
     }

@@ -136,8 +136,7 @@ TEST(Moving, EqualsBruteForceAtTheRaysTime) {
 }
 
 // 1,050,000 rays aim at the silhouette of a moving ball. Each ray has the same result as in a
-// search without a BVH, which places the ball at the ray's time (S11, B10). A miss, in the reported
-// figure, is a ray with another result.
+// search by brute force, without a BVH, which places the ball at the ray's time (S11, B10).
 TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
   Pool pool(1);
   Random random(8);

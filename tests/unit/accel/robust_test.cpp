@@ -1,6 +1,6 @@
-// Tests bad and unusual input: empty scenes, invalid rays, bad primitives and normals, and many
-// equal triangles. Bad primitives do not change the hits on other geometry. An id such as Q7 in a
-// test's name is that of a case in tests/hard_cases/cases.txt.
+// Tests Accel, the renderer's BVH, with bad and unusual input: empty scenes, invalid rays, bad
+// primitives and normals, and many equal triangles. Bad primitives do not change the hits on other
+// geometry. An id such as Q7 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns a scene of one instance of the mesh, without a transform.
 Geometry of_mesh(Mesh mesh) {
   Geometry g;
   g.meshes.push_back(std::move(mesh));

@@ -27,6 +27,8 @@ struct Case {
   Transform to_world;
 };
 
+/// Returns placements that squash or stretch by 3 to 10 orders of magnitude. Some of them also
+/// rotate, mirror and move.
 std::vector<Case> cases() {
   const Transform turn = rotation({1, 2, 3}, 40);
   const Transform turn_and_move = translation({3, -2, 1}) * turn;
@@ -62,8 +64,9 @@ Geometry placed(const Transform& to_world, bool cube) {
   return g;
 }
 
-/// Returns a random direction on the inner or outer side of the surface. It is uniform in the world
-/// or in the object's own space. If the normal is zero, it may be on any side.
+/// Returns a random direction on the inner or outer side of the surface. The direction is uniform
+/// in the world or in the object's own space. If the normal of `p` is zero, the direction may be
+/// on any side.
 Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_world,
                     Random& random) {
   Vec3 d = test::random_direction(random);
@@ -79,8 +82,8 @@ struct Lost {
   int outside = 0;  ///< rays that left outwards and hit the surface again
 };
 
-/// Traces `rays` rays from outside. Each of them continues inwards from every surface that it hits,
-/// up to 20 times. At each hit, one more ray leaves outwards.
+/// Traces `rays` rays from outside. From each hit, the ray continues inwards, up to 20 times, and
+/// one more ray leaves outwards.
 Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_t seed) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);

@@ -1,6 +1,6 @@
-// The structure of a BVH: every item is in one leaf, boxes contain their items, the depth is
-// bounded, and the tree does not depend on the number of threads. An id such as B7 in a test's name
-// is that of a case in tests/hard_cases/cases.txt.
+// Tests the structure of a BVH: every item is in one leaf, boxes contain their items, the depth is
+// bounded, and the tree does not depend on the number of threads that build it. An id such as B7 in
+// a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/accel/wide_tree.h"
 
@@ -119,7 +119,7 @@ TEST(Tree, B7_IsNeverDeeperThanTheTraversalStack) {
   EXPECT_LE(tree.depth, 18u);
   EXPECT_EQ(visited(tree, {{0.5, 0.5, -1}, {0, 0, 1}}).size(), same.size());
   const std::vector<FloatBox> huge(100, FloatBox{{-3e38f, 0, 0}, {3e38f, 3e38f, 1}});
-  EXPECT_LE(build_tree(huge).depth, 8u);
+  EXPECT_LE(build_tree(huge).depth, 8u);  // log2 of 100, rounded up, and one more
   test::report_hard_case("B7",
                          "the tree of 1,000 nested boxes is no deeper than the traversal stack");
 }

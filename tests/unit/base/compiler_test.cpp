@@ -1,5 +1,5 @@
-// The floating-point behaviour that the compiler options must ensure. An id such as Y1 in a test's
-// name is that of a case in tests/hard_cases/cases.txt.
+// Tests the floating-point behaviour that the compiler options must ensure. An id such as Y1 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -46,6 +46,7 @@ TEST(Compiler, Y1_KeepsTheRoundingOfNeighbouringFloats) {
 TEST(Compiler, Y3_RoundsProductsBeforeItAdds) {
   volatile double unknown = 1 + 0x1p-30;
   const double a = unknown;
+  // The square of a is 1 + 2^-29 + 2^-60. Rounding the product to double drops 2^-60.
   EXPECT_EQ(multiply_add(a, a, -(1 + 0x1p-29)), 0);
   EXPECT_EQ(std::fma(a, a, -(1 + 0x1p-29)), 0x1p-60);
   test::report_hard_case("Y3", "a product is rounded before a sum (no fused multiply-add)");

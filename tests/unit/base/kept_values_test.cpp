@@ -18,7 +18,8 @@ TEST(KeptValues, ForgetsValuesThatARoundDidNotUse) {
   EXPECT_EQ(*values.find(1), "one");
   values.set(3, "three");
   values.end_round();
-  // A value is used in a round if it is found or set. contains() is no use of it.
+  // A round uses a value if find() or set() is called for the value. A call of contains() does not
+  // count.
   EXPECT_TRUE(values.contains(1));
   EXPECT_FALSE(values.contains(2));
   EXPECT_EQ(values.find(2), nullptr);

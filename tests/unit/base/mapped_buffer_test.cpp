@@ -1,4 +1,5 @@
-// Large buffers: memory, or a file without a name that is mapped into memory.
+// Tests large buffers. MappedBuffer::create() takes the size in bytes and a folder. The buffer is a
+// file without a name in this folder, mapped into memory; without a folder it is plain memory.
 
 #include "renderlib/base/mapped_buffer.h"
 

@@ -128,8 +128,9 @@ TEST(Simd, EveryOperationEqualsThePlainOne) {
   }
 }
 
-// Where neither operand is less, the instructions of x86 return the second one. NEON's min and max
-// would return NaN if an operand is NaN, and would treat -0 as less than 0.
+// Where neither operand is less than the other operand, min and max must return the second operand,
+// as the instructions of x86 do. NEON's instructions would return NaN if an operand is NaN, and
+// would treat -0 as less than 0.
 TEST(Simd, MinAndMaxReturnTheSecondOperandWhereNeitherIsLess) {
   const float nan = std::nanf("");
   const Lanes a = {nan, 1, nan, 0.0f, -0.0f, 2, nan, -HUGE_VALF};
