@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads the answers of the exported functions, in tests of the renderer and the session of a
-// browser's tab. An answer is valid until the next call for its object.
+// Reads answers, for tests of the worker in a browser's tab. The worker exports functions, which
+// return answers. An answer is valid until the next call for the same renderer or session.
 
 #include <gtest/gtest.h>
 

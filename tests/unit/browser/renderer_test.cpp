@@ -1,8 +1,10 @@
-// The renderer in a browser's tab, called through the functions that it exports. Its pixels have
-// the same bytes as those of a native worker. It renders a band in parts of a few rows. Parts
-// should end at multiples of the row step. If the scene shares paths between pixels, the row step
-// is 16, the height of a tile; otherwise it is 1. A digest is passed as 64 hexadecimal digits. The
-// helpers good() and error_of() expect that a call succeeds or fails, and return its answer.
+// Tests the renderer in a browser's tab, through the functions that the renderer exports. Its
+// pixels have the same bytes as those of a native worker. A lease is a message that assigns a band
+// (some samples of some rows) to a worker. The renderer renders a band in parts of a few rows.
+// Parts should end at multiples of the row step. If the scene shares paths between pixels, the row
+// step is 16, the height of a tile; otherwise it is 1. A digest is passed as 64 hexadecimal digits.
+// The helper good() expects that a call succeeds, and error_of() that a call fails. Both return the
+// answer of the call.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-// The session of a browser's tab with the coordinator, called through the functions that it
+// Tests the session of a browser's tab with the coordinator, through the functions that the session
 // exports. The tests make the messages of the coordinator; a lease is a message that assigns a band
 // (some samples of some rows) to the worker. Answers of the functions are JSON or serialised
-// messages. The helpers good() and error_of() expect that a call succeeds or fails, and return its
-// answer.
+// messages. The helper good() expects that a call succeeds, and error_of() that a call fails. Both
+// return the answer of the call.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -95,10 +95,13 @@ class BrowserSessionTest : public ::testing::Test {
     const std::string digest = wire::sha256("sums").raw();
     return bandsaw_session_band_header(session_, task, digest.data(), digest.size(), 384, 2, 3);
   }
+  /// Tells the session that the task has failed. Returns the message for the coordinator, which is
+  /// empty if the lease was revoked.
   std::string failed(std::uint32_t task, const std::string& reason, const std::string& log) {
     return good(bandsaw_session_failed(session_, task, reason.data(), reason.size(), log.data(),
                                        log.size()));
   }
+  /// Gives the session the coordinator's reply to the band of the task.
   const BandsawAnswer* reply(std::uint32_t task, farm::PutBandReply::Outcome outcome) {
     farm::PutBandReply message;
     message.set_outcome(outcome);

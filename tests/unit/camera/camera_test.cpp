@@ -1,6 +1,6 @@
-// Camera rays: directions, depth of field, times within the shutter, and the errors for cameras
-// that are out of range. An id such as C1 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Tests camera rays: their directions, depth of field, and times within the shutter interval. Also
+// tests the errors for cameras with values that are out of range. An id such as C1 in a test's name
+// is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/camera/camera.h"
 
@@ -133,7 +133,7 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
   lens.focus_distance = 5;
   for (const double z : {1.0, 2.5, 4.9, 8.0, 100.0}) {
     // Draws a line from each of many points on the lens through the point (0, 0, -z). The image
-    // lies on the plane of focus, so the line meets it at an image position (x, y). The camera's
+    // lies on the plane of focus, so the line meets the image at a position (x, y). The camera's
     // ray from the same point on the lens to (x, y) must pass through (0, 0, -z).
     const RayGenerator rays(lens, 1000, 1000);
     const double pixel = 2 * std::tan(20 * 3.14159265358979 / 180) / 1000;

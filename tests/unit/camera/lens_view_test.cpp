@@ -1,5 +1,5 @@
-// LensView: the directions of the rays from the lens through one point in focus, and their density.
-// It is used to sample lights that are out of focus.
+// Tests LensView, which describes all rays from the lens through one point in focus, and gives the
+// pdf of their directions. The renderer uses LensView to sample lights that are out of focus.
 
 #include "renderlib/camera/lens_view.h"
 
@@ -64,6 +64,7 @@ TEST(LensView, TheMeanOfTheInversePdfIsTheSolidAngle) {
     const Sample4 at = sample4({1, 2, 3, i}, 0);
     sum += 1 / view->pdf(rays.ray(30, 20, at[2], at[3]).direction);
   }
+  // The lens has the radius 0.4, and its middle is at the distance 4 from the point in focus.
   const double solid_angle = 2 * kPi * (1 - 4 / std::sqrt(4 * 4 + 0.4 * 0.4));
   EXPECT_NEAR(sum / kSamples, solid_angle, 1e-5 * solid_angle);
 }

@@ -1,4 +1,5 @@
-// Parsing of the command line: options, defaults, help, and the error for each wrong use.
+// Tests the parsing of the command line: options, defaults, help, and the error for each wrong use.
+// A stop rule is one of the options --samples, --error and --time, which tell when a render ends.
 
 #include "coordinator/cli/command_line.h"
 

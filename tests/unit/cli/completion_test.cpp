@@ -1,4 +1,5 @@
-// Completion of commands and options in a real bash.
+// Tests the completion of commands and options, with the script that `bandsaw completion bash`
+// prints, in a real bash.
 
 #include "coordinator/cli/completion.h"
 
@@ -60,6 +61,7 @@ TEST_F(CompletionTest, OffersTheWordsThatAnOptionTakes) {
   EXPECT_THAT(offered("completion ''"), ElementsAre("bash"));
 }
 
+// Where the script offers nothing, bash offers the names of files.
 TEST_F(CompletionTest, LeavesFilesToTheShell) {
   EXPECT_THAT(offered("render cor"), IsEmpty());
   EXPECT_THAT(offered("render --environment se"), IsEmpty());

@@ -9,10 +9,12 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns an image with one value in all pixels.
 Image flat(std::uint32_t width, std::uint32_t height, const Rgb& value) {
   return {width, height, std::vector<Rgb>(std::size_t{width} * height, value)};
 }
 
+/// Returns the number of pixels that have this value.
 std::size_t count(const Image& image, const Rgb& value) {
   return static_cast<std::size_t>(
       std::count_if(image.pixels.begin(), image.pixels.end(), [&](const Rgb& pixel) {
@@ -31,8 +33,8 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   EXPECT_EQ(picture.pixels.size(), std::size_t{picture.width} * picture.height);
   EXPECT_EQ(count(picture, red), 40u * 30);
   EXPECT_EQ(count(picture, green), 40u * 30);
-  // Labels are drawn with dots of 2 x 2 pixels. The digit 1 has 8 dots, the digit 2 has 11, the
-  // digit 0 has 12, and the minus sign has 3.
+  // The labels are -1, 2 and 10. They are drawn with dots of 2 x 2 pixels. The digit 1 has 8 dots,
+  // the digit 2 has 11, the digit 0 has 12, and the minus sign has 3.
   const Rgb ink{0.6f, 0.6f, 0.6f};
   const std::size_t cross = 2 * 30;  // two diagonals, each with a pixel in every row of a cell
   EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);

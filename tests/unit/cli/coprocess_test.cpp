@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Runs a shell script; lines that begin with `prefix` are its answers.
+/// Starts a shell script as the child. The child's lines that begin with `prefix` are its answers.
 std::unique_ptr<Coprocess> shell(const std::string& script, const std::string& prefix = "") {
   auto child = Coprocess::start({"/bin/sh", "-c", script}, prefix);
   EXPECT_TRUE(child.ok()) << child.status();

@@ -1,4 +1,5 @@
-// Tests the errors of FarmClient's calls with a server whose answers the test chooses.
+// Tests the errors of FarmClient, with which commands call a farm over gRPC. The test chooses the
+// answers of the server.
 
 #include "coordinator/cli/farm/farm_client.h"
 

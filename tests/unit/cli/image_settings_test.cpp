@@ -69,8 +69,8 @@ TEST(ImageSettings, AnImageThatIsTooLargeIsAnError) {
   EXPECT_FALSE(image_settings(options, tall).ok());
 }
 
-// Part files, which have sums of samples and are no pictures, are known by the suffix .band in any
-// case.
+// The test also covers lists of outputs and the suffix of part files. A part file has sums of
+// samples and is no picture. Its name ends in .band, in small or capital letters.
 TEST(Output, TheDefaultIsTheScenesNameInTheCurrentFolder) {
   EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
   EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");

@@ -1,5 +1,5 @@
-// The addresses of this machine that a join string lists. Workers and commands connect to a
-// coordinator with such a string.
+// Tests which addresses of this machine a join string lists. Workers and commands need a join
+// string to connect to a coordinator.
 
 #include "coordinator/cli/serve/join_addresses.h"
 
@@ -23,7 +23,8 @@ TEST(JoinAddresses, AGivenHostIsTheOnlyAddress) {
   EXPECT_THAT(join_addresses("farm.example", 1, kLocal), ElementsAre("farm.example:1"));
 }
 
-// The host 0.0.0.0 stands for all IPv4 addresses of this machine, and [::] for all its addresses.
+// The host 0.0.0.0 stands for all IPv4 addresses of this machine, and the host [::] for all IPv4
+// and IPv6 addresses.
 TEST(JoinAddresses, RealInterfacesComeBeforeVirtualOnesAndLoopbackIsLast) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, kLocal),
               ElementsAre("192.168.1.5:7", "172.17.0.1:7", "127.0.0.1:7"));

@@ -1,5 +1,7 @@
-// Tests the join string that rotate_secret() writes to its file after it has renewed the secret. If
-// a coordinator runs, the last argument of rotate_secret() is the coordinator's join string.
+// Tests rotate_secret(), which renews the secret of the workers or of the farm, and writes the join
+// string with the new secret to a file. A worker or a command connects to the coordinator with a
+// join string. If a coordinator runs, the last argument of rotate_secret() is the coordinator's
+// join string.
 
 #include "coordinator/cli/serve/join_files.h"
 

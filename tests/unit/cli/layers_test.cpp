@@ -37,6 +37,7 @@ TEST(Layers, EqualTheImagesOfTheirIntegrators) {
   const auto layers = make_layers({LayerKind::kSamples, LayerKind::kAlbedo, LayerKind::kDepth},
                                   settings, 16, render, {});
   ASSERT_TRUE(layers.ok()) << layers.status();
+  // The image has 48 pixels. Each of them has 16 samples.
   EXPECT_EQ((*layers)[0].image.pixels, std::vector<Rgb>(48, gray(16)));
   EXPECT_TRUE((*layers)[0].is_number);
   EXPECT_FALSE((*layers)[1].is_number);

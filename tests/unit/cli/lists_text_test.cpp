@@ -1,4 +1,5 @@
-// The tables of `bandsaw jobs` and `bandsaw workers`, and the texts of errors and stop rules.
+// Tests the tables and the JSON of `bandsaw jobs` and `bandsaw workers`, the exit codes of errors,
+// and the messages of stop rules, which tell when a job is done.
 
 #include "coordinator/cli/farm/lists_text.h"
 
@@ -33,8 +34,8 @@ TEST(Lists, JobsAreATableWithAlignedColumns) {
   EXPECT_THAT(jobs_table({}), ElementsAre(HasSubstr("no jobs")));
 }
 
-// A guide is an image, such as the albedo, by which the denoiser finds edges. It is rendered as a
-// job.
+// A guide is an image, such as the albedo, by which the denoiser finds edges. Each guide is
+// rendered as a job of its own.
 TEST(Lists, GuidesThatAreDoneAreCountedAndNotListed) {
   farm::JobStatus guide;
   guide.set_job(8);

@@ -1,7 +1,7 @@
-// A local render without a coordinator: the passes (ranges of samples) that it takes one after the
-// other until its stop rule holds, and its progress. The arguments of LocalPlan::next() are the
-// number of samples per pixel that are done, the estimated error (-1: unknown), and the seconds so
-// far.
+// Tests a render on this machine, without a coordinator. LocalPlan gives the passes of the render
+// (ranges of samples), one after the other, until the stop rule holds. LocalMeter measures the
+// progress. The arguments of LocalPlan::next() are the number of samples per pixel that are done,
+// the estimated error (-1: unknown), and the seconds so far.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// A sum over samples is added as a binary tree. Each pass is a node of this tree: an aligned range
-// of 2^n blocks, which have 8 samples each. The last block may be shorter.
+// The samples of a pixel are added up in a binary tree. Each pass is a node of this tree: an
+// aligned range of 2^n blocks. A block has 8 samples, but the last block may be shorter.
 TEST(LocalPlan, CoversTheSamplesOnceInOrder) {
   for (const std::uint64_t samples : {1U, 16U, 17U, 64U, 72U, 1000U}) {
     LocalPlan plan(StopAtSamples{samples});

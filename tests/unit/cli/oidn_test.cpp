@@ -1,6 +1,7 @@
 // Tests --denoise=oidn, which uses the library OpenImageDenoise, and the file names of --denoise. A
-// stand-in (tests/support/oidn) replaces the library. For images that are 13 pixels wide it fails
-// with the error "an unlucky width". For others it computes (color + albedo) / 2 + normal / 4.
+// stand-in (tests/support/oidn) replaces the library. For images that are 13 pixels wide, the
+// stand-in fails with the error "an unlucky width". For images of other widths, it computes
+// (color + albedo) / 2 + normal / 4.
 
 #include "coordinator/cli/image/oidn.h"
 

@@ -33,6 +33,7 @@ struct Screen {
   }
 };
 
+/// Returns the progress of a job with one worker. `fraction`: the share of the job that is done.
 Progress displayed_progress(double fraction = 0.5) {
   Progress progress;
   progress.job.id = 3;
@@ -44,6 +45,7 @@ Progress displayed_progress(double fraction = 0.5) {
   return progress;
 }
 
+/// Returns the JSON object of the line.
 google::protobuf::Struct parsed(const std::string& line) {
   google::protobuf::Struct message;
   EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(line, &message).ok()) << line;
@@ -54,6 +56,7 @@ TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
   Screen screen;
   const Console console = screen.console(false);
   ProgressDisplay display(console, {});
+  // An update comes every 0.1 s for 3 s, and every second a further 25 % are done.
   for (int i = 0; i <= 30; ++i) {
     display.update(displayed_progress(i / 40.0), 100 + i * 0.1);
   }

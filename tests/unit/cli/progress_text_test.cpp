@@ -109,6 +109,7 @@ TEST(ProgressText, TheLastLineShowsTheCost) {
   EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · 21.4 s · 1 thread");
 }
 
+// A clean image is a denoised image.
 TEST(ProgressText, ACleanImageShowsItsOwnError) {
   Progress progress = some_progress();
   progress.job.error = 0.16;
@@ -123,11 +124,12 @@ TEST(ProgressText, TheLastLineNamesTheReports) {
               testing::EndsWith(" · report a.json"));
 }
 
-// The error falls from 4 % to 2 % between 128 and 256 samples. Beyond 256 samples, the curve of
-// this octave is repeated, each time lower by the factor 2^(-3/4), the steepest fall that is
-// accepted. So the error at 512 f samples (1 < f <= 2) is 4 % / f / 2^1.5. It is 1 % at 724
-// samples, after 11.3 s of CPU. doubt_line() is a warning if a large share of the error is in the
-// worst pixels (worst_share).
+// The cost line predicts when the error will be 1 %. In this test the error falls from 4 % to 2 %
+// between 128 and 256 samples. For each further doubling of the samples, the curve of this
+// doubling is repeated, each time lower by the factor 2^(-3/4), the steepest fall that is accepted.
+// So the error at 512 f samples (1 < f <= 2) is 4 % / f / 2^1.5. The error is 1 % at 724 samples,
+// after 11.3 s of CPU. doubt_line() is a warning if a large share of the error is in the worst
+// pixels (worst_share).
 TEST(ProgressText, TheCostLineShowsRaysTimesAndTheErrorsOfMostPixels) {
   Progress progress = some_progress();
   JobView& job = progress.job;
