@@ -42,7 +42,7 @@ is_late() { [ -n "$minutes" ] && ((SECONDS >= minutes * 60)); }
 # Prints the number of the field $1 of the JSON object on the standard input.
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 # Succeeds if the number $1 is less than the number $2.
-least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
+is_less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 
 # Renders a scene until its reported error is at most `target` percent. Prints the samples of all pixels, the reported error, the CPU seconds
 # and the samples per pixel. Status 1: the render took more than ten times the CPU time of --seconds.
@@ -81,7 +81,7 @@ for scene in $scenes; do
   pilot=$(render "$scene" 5 1001 "$folder/work.pfm") || { echo "$scene 5" >> "$folder/left_out"; echo "$scene" >> "$folder/done"; continue; }
   read -r _ _ cpu samples <<<"$pilot"
   targets=5
-  if least "$(awk -v c="$cpu" 'BEGIN { print 6.25 * c }')" "$seconds"; then
+  if is_less "$(awk -v c="$cpu" 'BEGIN { print 6.25 * c }')" "$seconds"; then
     targets="5 2"
     samples=$((samples * 25 / 4))
   else

@@ -54,7 +54,7 @@ bool may_meet(const Box& box, const TracedRay& ray, double bound) {
 
 /// Keeps the closer hit. If both are at the same distance, keeps the one with the lower id, as
 /// Accel does.
-void keep_lower(const PrimitiveId& id, const Crossing& crossing, Hit& best) {
+void keep_closer(const PrimitiveId& id, const Crossing& crossing, Hit& best) {
   if (crossing.t < best.t || (crossing.t == best.t && id < best.id)) {
     best = {crossing.t, id, crossing.u, crossing.v};
   }
@@ -173,7 +173,7 @@ void ReferenceAccel::meet_loose(const Ray& ray, const TracedRay& traced, std::ui
     hit = intersect(traced, geometry_.triangles[index - first_triangle], crossing);
   }
   if (hit) {
-    keep_lower(id, crossing, best);
+    keep_closer(id, crossing, best);
   }
 }
 
@@ -195,7 +195,7 @@ void ReferenceAccel::meet_instance(const Ray& ray, std::uint32_t index, Hit& bes
     Crossing crossing;
     if (ray.from != id && intersect_triangle(local, mesh.positions[a], mesh.positions[b],
                                              mesh.positions[c], crossing)) {
-      keep_lower(id, crossing, best);
+      keep_closer(id, crossing, best);
     }
   });
 }

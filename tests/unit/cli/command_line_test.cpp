@@ -354,7 +354,7 @@ TEST(CommandLine, OutputsHaveAKnownSuffix) {
   EXPECT_TRUE(parse("render a.textproto --rows 0:4 -o a.band").ok());
 }
 
-TEST(CommandLine, TheHelpOfEachCommandHasAnExampleOfItAndTheExitCodes) {
+TEST(CommandLine, TheHelpOfEachCommandHasAnExampleAndTheExitCodes) {
   const std::string all = parsed<ShowText>("help").text;
   for (const char* command : {"serve", "submit", "watch", "jobs", "workers", "cancel", "pause",
                               "resume", "priority", "why", "logs", "doctor", "secret", "render",

@@ -28,7 +28,7 @@ TEST(ImageSettings, AreThoseOfTheSceneByDefault) {
 }
 
 // The seed of a frame is the given seed plus the number of the frame, modulo 2^64.
-TEST(ImageSettings, EachFrameHasASeedOfItsOwnUnlessItIsFixed) {
+TEST(ImageSettings, EachFrameHasASeedOfItsOwnUnlessTheSeedIsFixed) {
   const PackageInfo scene;
   ImageOptions options;
   options.seed = 5;
