@@ -64,7 +64,7 @@ run_block() {  # host how block
   esac
 }
 
-make_hosts 2>/dev/null || { echo "needs root, and a kernel with network namespaces"; exit 77; }
+make_hosts 2>/dev/null || { echo "tutorial.sh needs root, and a kernel with network namespaces"; exit 77; }
 host= how= text=
 while IFS= read -r line; do
   case $line in

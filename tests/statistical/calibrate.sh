@@ -102,6 +102,7 @@ readme=$root/tests/statistical/README.md
 sed '/<!-- table/q' "$readme" > "$folder/readme"
 sort -u "$folder/left_out" > "$folder/without"
 awk -v without="$folder/without" -v references="$folder/references" '
+  # A line of `runs` is: scene, target, seed, samples of all pixels, reported error, CPU seconds, samples per pixel, true error.
   function root_mean(sum, n) { return sqrt(sum / n) }
   { ++runs; scene[runs] = $1; goal[runs] = $2; guess[runs] = $5; spent[runs] = $6; count[runs] = $7; error[runs] = $8
     if ($7 >= most[$1]) { most[$1] = $7; most_goal[$1] = $2 } }

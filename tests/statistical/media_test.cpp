@@ -136,7 +136,8 @@ double scattered_once(const Medium& fog, double ahead, double aside, double inte
 }
 
 /// Compares the radiance along a ray in endless fog with quadrature. A small light is at the
-/// distance `ahead` along the ray and `aside` from it.
+/// distance `ahead` along the ray, and at the distance `aside` from the ray. `error`: the largest
+/// standard error that is accepted, relative to the expected value.
 void expect_single_scattering(const Medium& fog, double ahead, double aside, double error,
                               std::uint64_t samples = 1024) {
   constexpr double kRadius = 1e-6;  // so small that the light is practically a point

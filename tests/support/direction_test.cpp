@@ -81,7 +81,7 @@ void expect_samples_match_density(absl::FunctionRef<Vec3(double, double)> sample
   }
   const ChiSquared result = chi_squared(counts, expected);
   EXPECT_GT(result.p_value, sidak(0.01, tests))
-      << "chi2 " << result.statistic << " of " << result.degrees;
+      << "chi-squared " << result.statistic << ", degrees of freedom " << result.degrees;
 }
 
 }  // namespace bandsaw::test

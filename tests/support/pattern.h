@@ -9,8 +9,8 @@
 namespace bandsaw::test {
 
 /// Returns `size` bytes. Each byte depends only on the low 21 bits of its offset, so the pattern
-/// repeats after 2 MiB. The factor is 2^32 divided by the golden ratio, which spreads consecutive
-/// offsets.
+/// repeats after 2 MiB. Each offset is multiplied by 2^32 divided by the golden ratio, so that
+/// neighbouring offsets give different bytes.
 inline std::string pattern(std::size_t size) {
   std::string bytes(size, '\0');
   for (std::size_t i = 0; i < size; ++i) {

@@ -19,7 +19,7 @@ TEST(Accel, FindsTheNearestOfASphereAndAQuad) {
   const Hit hit = accel.closest(ray);
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit.t, 2);
-  EXPECT_EQ(hit.id, (PrimitiveId{0, 1}));
+  EXPECT_EQ(hit.id, (PrimitiveId{0, 1}));  // the quad; PrimitiveId{0, 0} is the sphere
   const SurfacePoint p = surface_at(g, ray, hit);
   EXPECT_EQ(p.geometric_normal, (Vec3{0, 0, 1}));
   EXPECT_EQ(p.uv, (Vec2{0.5, 0.5}));

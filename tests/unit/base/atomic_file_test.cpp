@@ -1,4 +1,5 @@
-// Files that are written completely or not at all, and the errors if they cannot be written.
+// Tests files that are written completely or not at all, and the errors if a file cannot be
+// written.
 
 #include "renderlib/base/atomic_file.h"
 
@@ -83,9 +84,9 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-// A program makes this check before the work whose result the file will contain. The temporary file
-// has a longer name than the file itself, so a file's name may be too long although it has fewer
-// than 255 bytes.
+// A program makes this check before the work whose result the file will contain. A file is first
+// written under a longer, temporary name. So a name of 250 bytes is too long, although the file
+// system allows 255 bytes.
 TEST(AtomicFile, ChecksBeforehandWhetherAFileCanBeWritten) {
   const test::TempDir dir;
   EXPECT_TRUE(check_can_be_written(dir / "a").ok());

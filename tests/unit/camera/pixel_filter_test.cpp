@@ -19,6 +19,8 @@ namespace {
 
 using Kind = PixelFilter::Kind;
 
+// The default filter is a box of one pixel. The position of a sample is the corner of the pixel
+// plus the random numbers, to the bit.
 TEST(PixelFilter, TheDefaultAddsTheRandomNumberToThePixelExactly) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const Sample4 at = sample4({.seed = 1, .x = 3, .y = 4, .sample = i}, kGroupCamera);
@@ -36,7 +38,8 @@ TEST(PixelFilter, C6_TheLastRandomNumberBelowOneStaysInThePixel) {
   test::report_hard_case("C6", "the sample stays in its pixel for x = 0, 65535 and 2^20 - 1");
 }
 
-/// The density of a filter of radius 1, not normalised.
+/// Returns the density of a filter of radius 1 at (x, y), not normalised. The standard deviation of
+/// the Gaussian is a third of the radius.
 double density(Kind kind, double x, double y) {
   switch (kind) {
     case Kind::kBox:

@@ -28,6 +28,8 @@ TEST(Comparison, ReportsTheMetricsOfTheDifference) {
   Image bad = image(32, 32, 0.5F);
   bad.pixels[5].g = 0.75F;
   const std::string text = comparison_text(compare_images(bad, image(32, 32, 0.5F)).value());
+  // The images have 4 blocks of 16 x 16 pixels. A block is off if its difference is too large to be
+  // noise.
   for (const char* part : {"RMSE", "relRMSE", "MAPE", "PSNR", "SSIM", "· FLIP",
                            "max difference 0.25 at pixel (5, 0)", "0 of 4 blocks off"}) {
     EXPECT_THAT(text, testing::HasSubstr(part));
