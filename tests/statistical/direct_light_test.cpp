@@ -87,7 +87,7 @@ TEST(DirectLight, OfASquareAboveTheReceiverMeetsTheClosedForm) {
 /// A square of side 2 at height 1 is made in three ways: as two triangles that are in no mesh, as a
 /// mesh of two triangles with a mirrored and scaled placement, and as a mesh of 128 triangles that
 /// is scaled by 100. Each way gives the irradiance of a quad of this size at this height.
-TEST(DirectLight, ASquareGivesTheSameAsQuadTrianglesOrMesh) {
+TEST(DirectLight, ASquareGivesTheSameIrradianceAsQuadTrianglesOrMesh) {
   const double expected = 1.740839502734;  // as of the quad in the previous test
   SceneMaker triangles;
   const MaterialId lamp = triangles.lamp(1);
