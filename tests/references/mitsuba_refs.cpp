@@ -156,8 +156,11 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
   for (std::size_t i = 0; i < channels; ++i) {
     const double of_one = std::max(1e-4, double{channel_of(variance, i)});
     const double difference = ours.mean[i] - channel_of(reference, i);
+    // `alone` is the variance of the difference in Mitsuba's tests. `both` is the variance that the
+    // comment at the top of this file describes.
     const double alone = of_one / static_cast<double>(ours.samples);
     const double both = std::max(alone, ours.variance[i]) + of_one / kReferenceSamples;
+    // Returns the p-value of the difference if its variance is v.
     const auto p_value = [&](double v) {
       return std::erfc(std::abs(difference) / std::sqrt(2 * v));
     };

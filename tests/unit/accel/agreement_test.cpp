@@ -56,7 +56,8 @@ Mesh flattened(Mesh mesh, float by) {
   return mesh;
 }
 
-/// Points of a small grid connected at random: many degenerate, collinear and coplanar triangles.
+/// Returns triangles whose corners are random points of a small grid. Many of the triangles are
+/// degenerate, collinear or coplanar.
 Mesh grid_soup(int count) {
   Random random(17);
   Mesh mesh;
