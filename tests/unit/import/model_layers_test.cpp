@@ -30,7 +30,7 @@ std::string codes(bool normals) {
   return bytes;
 }
 
-/// Renders the model by this integrator, with one pixel for each texel.
+/// Renders the file `model` in `folder` by `integrator`, with one pixel for each texel.
 Image seen(const TempDir& folder, const std::string& model, Integrator integrator) {
   const auto imported = import_scene(write_text(
       folder, "s.textproto",

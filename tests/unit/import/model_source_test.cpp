@@ -134,8 +134,7 @@ struct Hit {
 };
 
 /// Returns the nearest hit at (x, y) for a viewer who looks along -z, or std::nullopt if there is
-/// none.
-/// `doubtful` is set to true if the hit is at an edge, or if two surfaces are equally near.
+/// none. `doubtful` is set to true if the hit is at an edge, or if two surfaces are equally near.
 std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   std::optional<Hit> nearest;
   doubtful = false;

@@ -20,6 +20,7 @@ using ::testing::HasSubstr;
     GTEST_SKIP() << "needs the package assimp-testmodels"; \
   }
 
+/// Returns the number of triangles of all instances.
 std::size_t triangles(const ImportedScene& imported) {
   std::size_t count = 0;
   for (const Instance& instance : imported.scene.geometry.instances) {
@@ -28,6 +29,7 @@ std::size_t triangles(const ImportedScene& imported) {
   return count;
 }
 
+/// Returns the first image among the textures of the scene, or nullptr if it has no image.
 const ImageTexture* first_image(const ImportedScene& imported) {
   for (const Texture& texture : imported.scene.textures) {
     if (const auto* image = std::get_if<ImageTexture>(&texture)) {
@@ -37,6 +39,7 @@ const ImageTexture* first_image(const ImportedScene& imported) {
   return nullptr;
 }
 
+/// Returns the message of the error of an import, or "" if the import succeeds.
 std::string message_of(const std::string& path) {
   return std::string(import_scene(path).status().message());
 }
@@ -57,8 +60,8 @@ TEST_P(TexturedBox, HasItsTrianglesUvsAndTexture) {
   ASSERT_NE(image, nullptr);
   EXPECT_EQ(image->width, 211u);
   EXPECT_EQ(image->height, 211u);
-  // The front face shows the sky of the picture above the ground. The image is the right way up if
-  // the vertex with the larger y has the larger v, which is further up in the image.
+  // The front face shows the sky of the picture above the ground. A larger v is further up in the
+  // image. So the image is the right way up if the upper one of two vertices has the larger v.
   for (const auto& [a, b, c] : mesh.triangles) {
     if (mesh.normals[a][2] > 0 && mesh.positions[a][1] != mesh.positions[b][1] &&
         mesh.positions[a][0] == mesh.positions[b][0]) {
@@ -175,7 +178,8 @@ TEST(Model, MultipliesATextureWithItsColour) {
   ASSERT_TRUE(imported.ok()) << imported.status();
   const ImageTexture* image = first_image(*imported);
   ASSERT_NE(image, nullptr);
-  // White times (0.5, 1, 0) has the codes 188 (of 0.5), 255, 0; black stays black.
+  // The last texel is white. Times (0.5, 1, 0), it has the codes 188 (of 0.5), 255 and 0. Channels
+  // that are 0 stay 0.
   EXPECT_EQ(image->texels[9], std::byte{188});
   EXPECT_EQ(image->texels[10], std::byte{255});
   EXPECT_EQ(image->texels[11], std::byte{0});

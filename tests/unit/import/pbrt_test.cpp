@@ -18,6 +18,7 @@ using test::write_text;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+/// Writes `text` to the file s.pbrt in `dir`, and converts the file.
 absl::StatusOr<ConvertedScene> convert(const TempDir& dir, const std::string& text) {
   const std::string path = write_text(dir, "s.pbrt", text);
   const auto folder = SceneFolder::of(path);
@@ -27,6 +28,7 @@ absl::StatusOr<ConvertedScene> convert(const TempDir& dir, const std::string& te
   return convert_pbrt({path, "s.pbrt", *folder});
 }
 
+/// Returns the scene file that is made of `text`.
 scene::Scene scene_of(const std::string& text) {
   const TempDir dir;
   const auto converted = convert(dir, text);
@@ -34,6 +36,7 @@ scene::Scene scene_of(const std::string& text) {
   return converted.ok() ? converted->scene : scene::Scene();
 }
 
+/// Returns the message of the error for `text`, or "" if the conversion succeeds.
 std::string error_of(const std::string& text) {
   const TempDir dir;
   return std::string(convert(dir, text).status().message());
@@ -67,7 +70,8 @@ TEST(Pbrt, TheFieldOfViewIsThatOfTheShorterSide) {
       "Camera \"perspective\" \"float fov\" 90\n"
       "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\n"
       "WorldBegin");
-  // The width of 100 pixels has 90 degrees, so the height has twice atan 2, which is 63.43 degrees.
+  // The width of 100 pixels is seen under 90 degrees. The height is twice the width, so it is seen
+  // under 2 atan(2), and atan(2) is 63.43 degrees.
   EXPECT_NEAR(scene.camera().vertical_fov(), 2 * 63.43494882292201, 1e-9);
 }
 
@@ -315,8 +319,8 @@ TEST(Pbrt, SpheresWhoseUvsMatterAreMeshes) {
   }
 }
 
-// Textures are clamped as in pbrt. Without that, the scenes could not be rendered, because a
-// reflectance must lie in [0, 1].
+// Textures are clamped as in pbrt. Without the clamping, the scenes could not be rendered, because
+// a reflectance must lie in [0, 1].
 TEST(Pbrt, TexturesAboveOneAreClamped) {
   const std::string image = "\"imagemap\" \"string filename\" \"p.ppm\"";
   const std::string shape = "\nShape \"bilinearmesh\" \"point3 P\" [0 0 5 1 0 5 0 1 5 1 1 5]";
@@ -548,7 +552,8 @@ TEST(Pbrt, AGridOfEmissionScalesIsLeftOutAndASingleScaleIsApplied) {
 }
 
 // The mesh becomes a binary PLY file, in which the first byte of -0.0025 is a line break. Assimp
-// skips a line break after the header, although a number may begin with such a byte.
+// skips a line break after the header, even if a number begins with this byte. The triangle must be
+// read nevertheless.
 TEST(Pbrt, ANumberMayBeginWithALineBreak) {
   const TempDir dir;
   const std::string path = write_text(

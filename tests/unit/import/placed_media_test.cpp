@@ -37,6 +37,7 @@ absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   return import_scene(write_text(folder, "s.textproto", kHead + text));
 }
 
+/// Builds the scene of a scene file, which consists of kHead and `text`.
 std::shared_ptr<const Scene> scene_of(const std::string& text) {
   auto imported = import_text(text);
   EXPECT_TRUE(imported.ok()) << imported.status();
@@ -106,6 +107,8 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
 )";
   const auto scene = scene_of(kOpenFor1 + shapes);
   EXPECT_TRUE(scene->features().motion);
+  // The box reaches the first ray, at y = 2, at the time 0.5. The centre of the ball is at
+  // y = -2 time, and the second ray is at y = -0.5.
   for (const double time : {0.0, 0.2, 0.499, 0.501, 1.0}) {
     EXPECT_NEAR(smoke_along(*scene, {0, 2, -9}, {0, 0, 1}, time), time > 0.5 ? 2 : 0, kError);
     const double aside = -0.5 + 2 * time;

@@ -77,6 +77,7 @@ TEST(Placement, GridsMakeCopiesThatAreTheSameForTheSameSeed) {
   };
   const auto plain = grid("");
   ASSERT_EQ(plain.size(), 12u);
+  // A row along x has four copies, so copy 6 is the third copy of the second row.
   EXPECT_EQ(plain[6].to_world, translation({21, 2, 23}));
   const std::string rough = "jitter: [1, 0, 1] turn: 360 scale: [0.5, 2] ";
   const auto random = grid(rough + "seed: 4");
@@ -136,6 +137,7 @@ instance { of: "arm"
   const Vec3 start = to_world_at(g, g.instances[0], 1).point({});
   const Vec3 middle = to_world_at(g, g.instances[0], 2).point({});
   EXPECT_EQ(start, (Vec3{1, 0, 9}));
+  // At the time 2, the pair is at x = 2 in the arm, and the arm is turned by 90 degrees about z.
   EXPECT_LE(length(middle - Vec3{0, 2, 9}), 1e-15);
 }
 

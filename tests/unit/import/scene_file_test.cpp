@@ -320,6 +320,8 @@ material { name: "a" diffuse { texture { image { file: "small.ppm" } } } }
 material { name: "b" diffuse { texture { image { file: "./small.ppm" } } } }
 material { name: "c" diffuse { texture { image { file: "small.ppm" wrap: WRAP_CLAMP filter: FILTER_NEAREST } } } })"));
   ASSERT_TRUE(imported.ok()) << imported.status();
+  // Texture 0 is the colour of kHead. The materials "a" and "b" share texture 1, and "c" has
+  // texture 2.
   ASSERT_EQ(imported->scene.textures.size(), 3u);
   const auto& first = std::get<ImageTexture>(imported->scene.textures[1]);
   const auto& last = std::get<ImageTexture>(imported->scene.textures[2]);

@@ -14,6 +14,7 @@ using test::TempDir;
 using test::write_text;
 using ::testing::HasSubstr;
 
+/// Imports a scene with the material "m". `material`: the text of its fields.
 absl::StatusOr<ImportedScene> import_material(const std::string& material) {
   const TempDir folder;
   return import_scene(
@@ -22,7 +23,7 @@ absl::StatusOr<ImportedScene> import_material(const std::string& material) {
                      material + " }"));
 }
 
-/// Returns the part of the material that is special to its kind.
+/// Returns the part of the material that is special to its kind. `text`: as for import_material().
 template <class Kind>
 Kind material(const std::string& text) {
   const auto imported = import_material(text);
@@ -35,7 +36,7 @@ const std::string kNoise = " { noise { scale: 3 } } ";
 TEST(SceneMaterial, FuzzIsANumberATextureOrBoth) {
   EXPECT_EQ(material<Metal>("metal {}").fuzz, 0);
   const auto textured = material<Metal>("metal { fuzz_texture" + kNoise + "}");
-  EXPECT_EQ(textured.fuzz, 1);
+  EXPECT_EQ(textured.fuzz, 1);  // the factor of the texture, unless a number is given
   EXPECT_TRUE(textured.fuzz_map.has_value());
   EXPECT_EQ(material<Metal>("metal { fuzz: 0.25 fuzz_texture" + kNoise + "}").fuzz, 0.25);
 }

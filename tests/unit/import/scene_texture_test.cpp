@@ -33,7 +33,7 @@ std::string message(const std::string& texture) {
   return std::string(import_diffuse(texture).status().message());
 }
 
-/// Returns the texture of the only material.
+/// Returns the reflectance of the last material, which is diffuse.
 template <class Kind>
 Kind texture_of(const absl::StatusOr<ImportedScene>& imported) {
   const SceneDescription& scene = imported->scene;

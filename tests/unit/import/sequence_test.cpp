@@ -1,4 +1,5 @@
-// Frames of scenes that move: tracks of scene files, animations of glTF, cameras and shutters.
+// Frames of scenes that move: tracks of scene files, animations of glTF, cameras and shutters. A
+// track gives a field of the scene file a value for each time.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 /// Chooses a frame by its number. `shutter` is the share of a frame's time in which the shutter is
-/// open. If `fps` or `shutter` is std::nullopt, that of the scene is used.
+/// open. If `fps` or `shutter` is std::nullopt, the value of the scene is used.
 ImportChoices frame(double number, std::optional<double> fps = std::nullopt,
                     std::optional<double> shutter = std::nullopt) {
   ImportChoices choices;
@@ -187,7 +188,8 @@ TEST_F(Sequence, NodesOfGltfAreWhereTheirAnimationPutsThem) {
   add_channel(file, walk, 1, "scale", {0, 2}, {1, 1, 1, 3, 3, 3}, 3);
   file.root["animations"] = Json::array({walk});
   const std::string path = file.write(folder_, "m.gltf");
-  // Frame 12 of 24 is at half a second: 5 along x, 45 degrees about z, scaled by 1.5.
+  // At 24 frames per second, frame 12 is at half a second. The nodes are then moved by 5 along x,
+  // turned by 45 degrees about z and scaled by 1.5.
   const ImportedScene imported = read(path, frame(12));
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   ASSERT_THAT(imported.scene.geometry.instances, SizeIs(1));
@@ -230,8 +232,8 @@ TEST_F(Sequence, SkinsAndMorphTargetsHaveThePoseOfTheFrame) {
   add_channel(file, bend, 1, "translation", {0, 1}, {0, 0, 0, 0, 0, 8}, 3);
   add_channel(file, bend, 0, "weights", {0, 1}, {0, 1}, 1);
   file.root["animations"] = Json::array({bend});
-  // Frame 6 of 24 is at a quarter of a second. The bone moves all vertices by 2 along z, and the
-  // target moves the second vertex by 1 along x.
+  // At 24 frames per second, frame 6 is at a quarter of a second. The bone moves all vertices by 2
+  // along z, and the target moves the second vertex by 1 along x.
   const ImportedScene imported = read(file.write(folder_, "m.gltf"), frame(6, 24));
   ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));
   EXPECT_THAT(imported.scene.geometry.meshes[0].positions,

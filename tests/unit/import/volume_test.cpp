@@ -195,8 +195,9 @@ TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
 TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   const TempDir folder;
   auto tiles = named<openvdb::FloatGrid>("density");
-  // The grid has a cube of 128 x 128 x 128 voxels, which the tree stores as tiles or dense leaves,
-  // and beside it a part of a leaf.
+  // The grid has a cube of 128 x 128 x 128 voxels. OpenVDB stores the cube as tiles, each with one
+  // value for many voxels, or as leaves of 8 x 8 x 8 voxels. Beside the cube, a part of a leaf has
+  // values.
   tiles->fill(openvdb::CoordBBox({0, 0, 0}, {127, 127, 127}), 0.5f);
   tiles->tree().prune();
   tiles->fill(openvdb::CoordBBox({128, 0, 0}, {130, 7, 7}), 2.0f);
@@ -217,7 +218,7 @@ TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   EXPECT_EQ(reader.value(to_cells.point({131, 3, 3})), 0);
   EXPECT_EQ(reader.value(to_cells.point({-1, 3, 3})), 0);
   // A brick has 8 x 8 x 8 voxels. The bricks of the cube are equal and stored once. The second
-  // brick that is stored has the part of a leaf.
+  // brick that is stored has the part of a leaf. A voxel has two bytes.
   EXPECT_EQ(density->grid.values.size(), 2 * 512 * 2u);
   const auto albedo = read_volume(path, "albedo", "");
   ASSERT_TRUE(albedo.ok()) << albedo.status();
@@ -225,7 +226,7 @@ TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
             (Rgb{0.25f, 0.5f, 1}));
   const auto hot = read_volume(path, "", "temperature");
   ASSERT_TRUE(hot.ok()) << hot.status();
-  EXPECT_EQ(*check_grid(hot->grid), 1000);
+  EXPECT_EQ(*check_grid(hot->grid), 1000);  // the largest value of the grid
 }
 
 TEST(VdbFile, AnEmptyGridIsZero) {
@@ -316,6 +317,8 @@ instance { of: "g" scale: [2, 2, 2] }
   ASSERT_TRUE(smoke.density);
   EXPECT_EQ(smoke.density->scale, 0.5f);
   const VolumeGrid& first = media.grids[index_of(smoke.density->grid)];
+  // The grid has three cells along x, so (3, 0, 0) is the corner (1, 0, 0) of the unit box. The
+  // matrix doubles this corner and moves it by (1, 2, 3).
   EXPECT_EQ(first.to_medium.point({3, 0, 0}), (Vec3{3, 2, 3}));
   EXPECT_EQ(first.border, VolumeGrid::Border::kClamp);
   const Medium& fire = media.media[1];

@@ -111,6 +111,7 @@ TEST(Webp, LossyImagesAreNearTheirTexels) {
 TEST(Webp, DamagedAndAnimatedImagesAreErrors) {
   const std::string whole = lossless(codes(3), /*has_alpha=*/false);
   std::vector<std::string> warnings;
+  // The first 12 bytes tell that a file is WebP, and the last byte may be padding.
   for (std::size_t size = 12; size < whole.size() - 1; ++size) {
     const auto cut = decode_image(whole.substr(0, size), warnings);
     EXPECT_EQ(cut.status().code(), absl::StatusCode::kInvalidArgument) << size;

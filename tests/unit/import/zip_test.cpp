@@ -92,6 +92,7 @@ TEST(Zip, DamageIsAnError) {
 TEST(Inflate, DamagedDataAndBombsAreErrors) {
   EXPECT_FALSE(inflate("\x1f\x8b\x08", DeflateKind::kGzip, 100).ok());
   EXPECT_FALSE(inflate("", DeflateKind::kRaw, 100).ok());
+  // 706 zero bytes, deflated.
   const std::string zeros("\x63\x60\x18\x05\xa3\x60\x28\x03\x00", 9);
   const auto plain = inflate(zeros, DeflateKind::kRaw, 706);
   ASSERT_TRUE(plain.ok()) << plain.status();
@@ -120,7 +121,7 @@ TEST(Spectrum, ABlackBodyHasItsColour) {
   EXPECT_NEAR(y / (x + y + z), 0.40745, 0.001);
 }
 
-// Names of spectra are those of pbrt-v4. Reflectances are those at normal incidence.
+// The spectra have the names that they have in pbrt-v4. reflectance() is at normal incidence.
 TEST(Spectrum, MetalsHaveTheirColours) {
   const auto reflectance = [](const std::string& name) {
     const auto metal = spectrum::metal_rgb(*spectrum::named("metal-" + name + "-eta"),
@@ -132,8 +133,8 @@ TEST(Spectrum, MetalsHaveTheirColours) {
     }
     return out;
   };
-  // The expected values are those of brass (CuZn) at 500 nm in the table of Querry, of silver (Ag)
-  // at 551 nm in the table of Palik, and of rutile (TiO2) at 589 nm.
+  // The first two values are for brass (CuZn) at 500 nm, from the table of Querry. The next values
+  // are for silver (Ag) at 551 nm, from the table of Palik, and for rutile (TiO2) at 589 nm.
   EXPECT_NEAR(spectrum::named("metal-CuZn-eta")->at(500), 0.686, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-CuZn-k")->at(500), 2.250, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-Ag-eta")->at(551), 0.125, 2e-3);
