@@ -16,8 +16,8 @@ using test::SceneMaker;
 
 const Ray kDown{.origin = {0.1, 3, 0.2}, .direction = {0, -1, 0}};
 
-/// A floor and a wall under a non-uniform sky. With `behind_glass`, they are seen through a ball of
-/// glass.
+/// A floor and a wall under a non-uniform sky. With `behind_glass`, the floor and the wall are seen
+/// through a ball of glass.
 SceneMaker corner(bool behind_glass) {
   SceneMaker maker;
   const MaterialId gray = maker.diffuse({0.7f, 0.5f, 0.6f});
@@ -30,6 +30,7 @@ SceneMaker corner(bool behind_glass) {
   return maker;
 }
 
+/// Returns the radiance of one sample along kDown. Adds the rays to `counts`.
 Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
               PathCounts& counts) {
   return path_radiance(scene, kDown, PixelSampler(1, 2, 3), sample, {.branches = branches}, counts);
@@ -50,8 +51,8 @@ TEST(Branches, EachHasTheRadianceOfAnUnsplitPath) {
                 sum * (1 / static_cast<float>(branches)));
     }
   }
-  // All branches of a sample share its first ray. So two branches save one ray, and four branches
-  // save three.
+  // All branches of a sample share the ray from the camera. So two branches save one ray, and four
+  // branches save three.
   EXPECT_EQ(whole.rays, parts.rays - 100 * (1 + 3));
 }
 
@@ -70,8 +71,10 @@ test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t
 TEST(Branches, HaveTheMeanOfUnsplitPaths) {
   for (const bool behind_glass : {false, true}) {
     const auto scene = corner(behind_glass).build();
-    const test::Moments one = moments_of(*scene, 0, 1);
-    const test::Moments four = moments_of(*scene, 7, 4);
+    // The branches of sample 7 equal the unsplit samples 28 to 31, so they do not depend on sample
+    // 0.
+    const test::Moments one = moments_of(*scene, /*sample=*/0, /*branches=*/1);
+    const test::Moments four = moments_of(*scene, /*sample=*/7, /*branches=*/4);
     const double deviation = std::hypot(one.standard_error(), four.standard_error());
     EXPECT_LE(std::abs(one.mean() - four.mean()), 4 * deviation) << behind_glass;
     // Four stratified branches have less variance than four independent samples. Behind glass the

@@ -130,9 +130,9 @@ TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
   EXPECT_LT(power.standard_error(), 0.01 * expected);
 }
 
-// A surface with alpha is present for a part of the paths only. Only these paths look up its
-// photons. So a map must hold all light that arrives at the walls, whether the walls are opaque,
-// partly transparent, or a mixture with a part that receives no caustics.
+// A partly transparent surface is present for a part of the paths, and only these paths look up the
+// photons on the surface. So a map must hold all light that arrives at the walls, whether the walls
+// are opaque, partly transparent, or a mixture with a part that receives no caustics.
 TEST(Caustics, APartlyTransparentWallReceivesThePowerOfAnOpaqueOne) {
   for (const bool mixture : {false, true}) {
     SCOPED_TRACE(mixture);
@@ -327,6 +327,8 @@ TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
     ASSERT_EQ(first % length, 0u) << first;
     first = sample;
   }
+  // The first four maps are for kStep samples each. Map 4 begins at sample 4 kStep, map 10 at
+  // sample 16 kStep, map 22 at sample 64 kStep, and so on.
   EXPECT_EQ(PhotonMaps::number_of(4 * kStep - 1), 3u);
   for (std::uint64_t samples = 4 * kStep; samples <= 1 << 17; samples *= 4) {
     const double root = std::sqrt(static_cast<double>(samples / kStep));

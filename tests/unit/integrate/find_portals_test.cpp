@@ -35,10 +35,10 @@ struct Axes {
 };
 
 /// Returns `count` rays in cosine-distributed directions from random points of the walls of the
-/// room. They escape through the windows, which are in the coordinates of the room. The seed is
-/// chosen so that the portals cover the windows. With other seeds they may not: in 4 of 120 rooms
-/// (three tests, seeds 1 to 40) a portal misses more than a hundredth of a window, because few rays
-/// pass through that part.
+/// room. A ray escapes if it passes one of the windows, which are in the coordinates of the room.
+/// The seed is chosen so that the portals cover the windows. With other seeds, a portal may miss a
+/// part of a window through which few rays pass. With the seeds 1 to 40 for each of three tests, a
+/// portal misses more than a hundredth of a window in 4 of the 120 rooms.
 std::vector<ScatteredRay> rays_of_room(const std::vector<Portal>& windows, const Axes& axes,
                                        int count) {
   test::Random random(1);

@@ -84,6 +84,8 @@ void add_lamp_and_floor(SceneMaker& maker) {
   maker.quad({-4, -2, 4}, {8, 0, 0}, {0, 0, -8}, maker.diffuse(0.6f));
 }
 
+// In a furnace, nothing absorbs light and the background has the radiance 1 everywhere. So the
+// radiance along every ray must be 1.
 TEST(GridMedia, NothingIsLostInAFurnace) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
@@ -258,7 +260,7 @@ TEST(GridMedia, TheLastOfOverlappingBoundariesCounts) {
   fill_placed(maker, dark, translation({0.5, 0, 0.5}));
   const auto scene = maker.build();
   // At x = 0.3 the density is 10 in the first box and 6 in the second. The second box reaches from
-  // z = -0.5 to z = 1.5.
+  // z = -0.5 to z = 1.5, and 0.5 units of the first box remain.
   const Moments seen = moments_of(*scene, {.origin = {0.3, 0, 5}, .direction = {0, 0, -1}});
   EXPECT_LT(std::abs(seen.z(std::exp(-0.1 * (6 * 2 + 10 * 0.5)))), 4);
 }
@@ -306,8 +308,8 @@ TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
 }
 
 TEST(GridMedia, FireLightsItsSurroundings) {
-  // The medium has a temperature, but it neither absorbs nor scatters. Seen directly and by its
-  // light on the floor, it must equal a homogeneous medium with the same emission.
+  // The fire has a temperature of 2000 K, and it neither absorbs nor scatters. A homogeneous medium
+  // with the same emission must look the same and must light the floor in the same way.
   SceneMaker fire;
   fire.quad({-4, -2, 4}, {8, 0, 0}, {0, 0, -8}, fire.diffuse(0.6f));
   SceneMaker glow = fire;

@@ -21,6 +21,8 @@ constexpr std::uint32_t kWidth = 24;
 constexpr std::uint32_t kHeight = 16;
 constexpr std::uint32_t kDepth = 6;
 
+/// Trains path guiding. Returns the variance of paths, and the parts of it that guiding and photon
+/// maps would remove.
 GuidingGain gain_of(const Scene& scene, int threads = 2) {
   Pool pool(threads);
   const GuidingKey key{kWidth, kHeight, kDepth};
@@ -85,8 +87,9 @@ TEST(GuidingGain, IsZeroWhereNothingIsNoisy) {
   EXPECT_EQ(gain.share_of(1), 1);
 }
 
-/// Bars of lamps before a wall that they light. A bar covers a fifth of each pixel's width, so the
-/// noise is that of the emission which the camera sees. No light is scattered twice.
+/// Bars of lamps before a wall that they light. A bar covers a fifth of each pixel's width, so some
+/// samples of a pixel see a lamp and others see the wall. The noise of the image comes from this
+/// difference. No light is scattered twice.
 std::shared_ptr<const Scene> wall_behind_bars() {
   test::SceneMaker maker;
   maker.quad({-5, -5, -3}, {10, 0, 0}, {0, 10, 0}, maker.diffuse(0.5f));
@@ -114,6 +117,7 @@ std::shared_ptr<const Scene> room_lit_by_its_ceiling() {
   return maker.build();
 }
 
+// Gathering means that indirect light comes from photon maps.
 TEST(GuidingGain, DirectLightHasAllNoiseWhereNoLightIsScatteredTwice) {
   const GuidingGain gain = gain_of(*wall_behind_bars());
   EXPECT_GT(gain.variance, 1);

@@ -20,6 +20,7 @@ namespace {
 using test::lamp_in_glass;
 using test::SceneMaker;
 
+/// Trains guiding for an image of 64 x 64 pixels and paths of at most 8 scatterings.
 std::shared_ptr<const TrainedGuiding> trained(const Scene& scene, int threads = 1) {
   Pool pool(threads);
   const std::atomic<bool> stop = false;

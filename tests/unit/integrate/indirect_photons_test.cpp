@@ -1,7 +1,8 @@
 // Compares indirect light from photon maps with a closed form, and checks that paths with maps have
 // the same expected value as paths without. A receiver is a surface with wide lobes. At the second
-// receiver of a path, the light that arrives from other receivers is estimated from photons. The
-// path ends at the third receiver.
+// receiver of a path, the light that arrives from other receivers is estimated from photons. Beyond
+// the second receiver, the path collects only light that arrives there without meeting another
+// receiver. So the path ends at the third receiver.
 
 #include "renderlib/integrate/indirect_photons.h"
 
@@ -103,8 +104,8 @@ struct Case {
   std::uint32_t maps = 12;
 };
 
-/// A room whose lamp lights only a spot of the ceiling. So many photons start at each point of the
-/// spot.
+/// A room whose lamp lights only a spot of the ceiling, so that each point of the spot is the start
+/// of many photons.
 SceneMaker room_with_a_spot() {
   SceneMaker maker;
   add_room(maker, maker.diffuse(0.6f));
@@ -209,6 +210,8 @@ TEST(IndirectPhotons, EndWithoutAbsorption) {
   maker.sphere({0, 0, 0}, 0.1, maker.lamp(1));
   const auto scene = maker.build();
   const std::size_t stored = traced_500(*scene, sources_of(*scene, 500)).photons.size();
+  // A photon is stored about 12 times on average: roulette begins after 8 scatterings, and ends a
+  // quarter of the photons at each further scattering.
   EXPECT_GT(stored, 500u * 8);
   EXPECT_LT(stored, 500u * 14);
 }

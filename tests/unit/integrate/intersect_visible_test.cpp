@@ -42,7 +42,8 @@ Material blended(double alpha) {
   return m;
 }
 
-/// Texture 0 is white, so that factors alone define a material.
+/// Returns a maker with a sky of radiance 1. Texture 0 is white, so that factors alone define a
+/// material.
 SceneMaker white_sky() {
   SceneMaker maker;
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
@@ -72,6 +73,8 @@ TEST(Alpha, BothSidesOfASphereAreHit) {
   const MaterialId half = maker.material(blended(0.5));
   maker.sphere({0, 0, 0}, 1, half);
   maker.sphere({0, 0, 0.3}, 1, half);
+  // The ray meets four surfaces and passes each with probability 1/2. A surface that is present is
+  // black, except for its reflection.
   const Moments sum = light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 20000);
   EXPECT_NEAR(sum.mean(), 0.0625, 0.045 + 4 * sum.standard_error());
   EXPECT_GT(sum.mean(), 0.0625 - 4 * sum.standard_error());
@@ -145,6 +148,7 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
   glow.emission = {{{}, {3, 3, 3}}, true};
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(glow));
   const Ray front{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
+  // The black surface emits 3 and reflects a little of the sky.
   EXPECT_NEAR(light_along(maker, front, 2000).mean(), 3.02, 0.03);
   const Ray back{.origin = {0.1, 0.2, -5}, .direction = {0, 0, 1}};
   EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
@@ -264,7 +268,8 @@ TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
 }
 
 // A bubble extends out of a block of glass. The part of the block's face inside the bubble is not
-// present for paths, but occludes shadow rays. So light behind it is found by BSDF sampling alone.
+// present for paths, but occludes shadow rays. So light behind this part is found by BSDF sampling
+// alone.
 TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
@@ -324,8 +329,8 @@ TEST(HiddenLamps, DoNotCountTowardsTheMaximumDepth) {
   EXPECT_NEAR(with.mean(), without.mean(), 5 * with.standard_error() + 1e-5);
 }
 
-// A ray crosses a ball of glass that does not refract. It sees the emission of the glass twice, and
-// the sky.
+// A ray crosses a ball of glass that does not refract. Its radiance is twice the emission of the
+// glass plus 1, the radiance of the sky.
 TEST(GlassThatDoesNotRefract, EmitsLikeOtherGlass) {
   SceneMaker maker = white_sky();
   Material glass = Dielectric{1};

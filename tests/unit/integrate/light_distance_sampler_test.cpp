@@ -17,8 +17,8 @@ namespace {
 constexpr double kLength = 6;
 
 /// Returns the integral of f(distance) over the segment [0, kLength]. A light source is at the
-/// distance `aside` from the middle of the segment. Steps have equal angles seen from the source,
-/// so they are small near it.
+/// distance `aside` from the middle of the segment. All steps have the same angle seen from the
+/// source, so the steps near the source are short.
 double integral(double aside, const std::function<double(double)>& f) {
   constexpr int kSteps = 20000;
   const double low = std::atan(-3 / aside);
@@ -70,6 +70,7 @@ TEST(LightDistanceSampler, IsNeverMuchWorseThanItsBetterStrategy) {
       RecordProperty("sigma " + std::to_string(sigma) + " aside " + std::to_string(aside),
                      std::to_string(found.flown) + " " + std::to_string(found.angles) + " " +
                          std::to_string(found.both));
+      // A spread plus 1 is the second moment divided by the square of the mean.
       EXPECT_LE(found.both + 1, 2 * (std::min(found.flown, found.angles) + 1)) << sigma << aside;
     }
   }

@@ -65,7 +65,8 @@ Ray random_ray(test::Random& random, double spread) {
   return {.origin = {x, y, z}, .direction = sample_sphere(u, random.uniform())};
 }
 
-/// The balls of five media overlap, are nested or are disjoint. Rays begin anywhere.
+/// The balls of five media overlap, are nested or are disjoint. Where they overlap, the medium with
+/// the largest number counts, which is the one that the scene names last. Rays begin anywhere.
 TEST(MediumTraversal, V6V7_InOverlapsTheMediumNamedLastCounts) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
@@ -159,7 +160,8 @@ TEST(MediumTraversal, AClearMediumDisplacesOthers) {
   EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, std::exp(-4.0f));
 }
 
-/// The ray has more crossings than the traversal stores in its first pass along the ray.
+/// MediumTraversal stores a limited number of crossings in its first pass along a ray. The first
+/// ray of this test has more crossings.
 TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(0.125f, 0));
@@ -171,6 +173,8 @@ TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
   const Ray ray{.origin = {-3, 0, 0}, .direction = {1, 0, 0}};
   EXPECT_NEAR(std::log(media_transmittance(*scene, ray, NumberStream(0), rays).g), -100 * 2 * 0.125,
               1e-4);
+  // This ray passes 1 unit of the ball in which it begins, and 2 units of each of the next three
+  // balls.
   const Ray inside{.origin = {150, 0, 0}, .direction = {-1, 0, 0}, .t_max = 10};
   EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, NumberStream(0), rays).g,
                   std::exp(-7 * 0.125f));
@@ -254,6 +258,7 @@ TEST(MediumTraversal, FindsEachOfManyMediaInARow) {
   }
   const auto scene = maker.build();
   std::uint64_t rays = 0;
+  // For each of the 40 balls, the ray passes 2 units of the ball and 1 unit of the mist.
   const Ray ray{.origin = {-2, 0, 0}, .direction = {1, 0, 0}, .t_max = 3.0 * 40};
   EXPECT_NEAR(std::log(media_transmittance(*scene, ray, NumberStream(0), rays).g),
               -40 * (2 * 0.25 + 0.125), 1e-4);

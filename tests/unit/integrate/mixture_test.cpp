@@ -23,7 +23,8 @@ using test::SceneMaker;
 /// Half the width of large floors and sheets.
 constexpr double kFar = 100;
 
-/// Texture 0 is white, so that factors alone define a material.
+/// Returns a maker with a sky of this radiance. Texture 0 is white, so that factors alone define a
+/// material.
 SceneMaker with_sky(float radiance) {
   SceneMaker maker;
   maker.texture(ConstantTexture{{1, 1, 1}});
@@ -137,8 +138,9 @@ TextureId coordinate(SceneMaker& maker, RampTexture::Over over) {
   return maker.texture(ramp);
 }
 
-// The height is the coordinate u or x times the scale. The wall is 2 units wide. Over this width u
-// rises by 1, which is a slope of 1/2, and x by 2, which is a slope of 1.
+// The height is the coordinate u or x times the scale. The wall is 2 units wide. Over this width, u
+// rises by 1, so a height of u has half the scale as its slope. The coordinate x rises by 2, so a
+// height of x has the scale as its slope.
 TEST(HeightMap, TiltsTheNormalByItsSlope) {
   for (const double scale : {0.5, 1.0, -1.0}) {
     for (const bool in_space : {false, true}) {

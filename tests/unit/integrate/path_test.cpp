@@ -90,8 +90,8 @@ std::shared_ptr<const Scene> behind_panes(int count, const ThinDielectric& pane)
   return maker.build();
 }
 
-// With free_passage, the last argument of the pane `free`, light that passes the pane does not
-// count as scattered.
+// The last argument of the pane `free` sets free_passage: light that passes the pane does not count
+// as scattered. Each pane passes half of the light, so two panes leave 2 of the lamp's radiance 8.
 TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   constexpr double kIndex = 1.00001;  // so close to 1 that a pane reflects nothing in float
   const ThinDielectric counted{kIndex, {0, 0, 0}, gray(0.5f)};

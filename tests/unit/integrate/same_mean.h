@@ -20,7 +20,7 @@ struct MeanComparison {
   std::uint32_t max_depth = 0;
   std::uint32_t maps = 0;
   std::uint32_t paths = 0;    ///< for each map
-  std::uint64_t photons = 0;  ///< PhotonMapKey::photons
+  std::uint64_t photons = 0;  ///< photons that are started for the caustics of each map
   double max_deviation = 0;   ///< maximum standard error of the difference, relative to the mean
 };
 

@@ -100,6 +100,7 @@ TEST(SampleValue, UsesNormalMapsAndSkipsHoles) {
   bent.relief.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
   const MaterialId id = maker.material(bent);
   wall(maker, id);
+  // The normal of the map is n = (1, 0, 1) / sqrt(2), and the image shows (n + 1) / 2.
   const Rgb normal = value(maker, Integrator::kNormals, kAhead);
   EXPECT_NEAR(normal.r, 0.5 + std::sqrt(0.125), 1e-6);
   EXPECT_NEAR(normal.b, 0.5 + std::sqrt(0.125), 1e-6);
@@ -156,10 +157,11 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   expect_mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
   maker.scene.local_shading.occlusion_distance = 2.5;
   const double near = expect_mean(maker, Integrator::kAmbientOcclusion, below,
-                                  // Rays that hit the ball nearer than 2.5 are in a cone. Its rim
-                                  // is the circle in which the ball meets a sphere of radius 2.5
-                                  // about the point. The circle is at z = (2.5^2 + 4^2 - 2^2) / 8,
-                                  // so sin^2 of the half-angle is 1 - (z / 2.5)^2.
+                                  // Rays that hit the ball nearer than 2.5 are in a cone. The rim
+                                  // of the cone is the circle in which the ball meets a sphere of
+                                  // radius 2.5 about the point. The circle is at
+                                  // z = (2.5^2 + 4^2 - 2^2) / 8. So sin^2 of the half-angle, which
+                                  // is the occluded share, is 1 - (z / 2.5)^2.
                                   std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
   EXPECT_GT(near, 0.75);
   maker.scene.local_shading.occlusion_distance = 1.9;
