@@ -42,6 +42,7 @@ std::string error_of(const std::string& text) {
   return std::string(convert(dir, text).status().message());
 }
 
+/// Returns the warnings of the conversion of `text`.
 std::vector<std::string> warnings_of(const std::string& text) {
   const TempDir dir;
   const auto converted = convert(dir, text);

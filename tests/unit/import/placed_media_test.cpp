@@ -29,6 +29,7 @@ medium { name: "air" }
 const std::string kOpenFor1 =
     "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0 shutter_close: 1 }\n";
 
+/// Imports a scene file of kHead and `text`. Its folder also has cube.obj, a unit cube.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "cube.obj",

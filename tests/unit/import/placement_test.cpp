@@ -25,11 +25,13 @@ group { name: "pair"
   shape { disk { normal: [0, 3, 0] radius: 1 } material: "red" } }
 )";
 
+/// Imports a scene file of kHead and `text`.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   return import_scene(write_text(folder, "s.textproto", kHead + text));
 }
 
+/// Returns the message of the error of import_text().
 std::string message(const std::string& text) {
   return std::string(import_text(text).status().message());
 }

@@ -16,6 +16,7 @@ using test::write_text;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+/// Imports a scene file with this text. The end of `name` tells the format.
 absl::StatusOr<ImportedScene> import_text(const std::string& text,
                                           const std::string& name = "s.textproto") {
   const TempDir folder;

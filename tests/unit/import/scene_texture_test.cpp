@@ -18,6 +18,7 @@ using ::testing::HasSubstr;
 
 const std::string kHead = "camera { position: [0, 1, 5] look_at: [0, 0, 0] }\n";
 
+/// Imports a scene file of kHead and `text`. Its folder also has two small images.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "colors.ppm", small_ppm());
@@ -25,10 +26,12 @@ absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   return import_scene(write_text(folder, "s.textproto", kHead + text));
 }
 
+/// Imports a scene with one material, which is diffuse and has this texture.
 absl::StatusOr<ImportedScene> import_diffuse(const std::string& texture) {
   return import_text("material { name: \"m\" diffuse { texture { " + texture + " } } }");
 }
 
+/// Returns the message of the error of import_diffuse().
 std::string message(const std::string& texture) {
   return std::string(import_diffuse(texture).status().message());
 }
@@ -41,6 +44,7 @@ Kind texture_of(const absl::StatusOr<ImportedScene>& imported) {
   return std::get<Kind>(scene.textures[index_of(material.reflectance)]);
 }
 
+/// Returns the value of the texture `id`, which is constant.
 Rgb color(const absl::StatusOr<ImportedScene>& imported, TextureId id) {
   return std::get<ConstantTexture>(imported->scene.textures[index_of(id)]).value;
 }

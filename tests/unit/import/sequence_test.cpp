@@ -33,6 +33,7 @@ ImportChoices frame(double number, std::optional<double> fps = std::nullopt,
   return choices;
 }
 
+/// Expects that the coordinates of a and b differ by at most 1e-6.
 void expect_near(const Vec3& a, const Vec3& b) {
   EXPECT_NEAR(a.x, b.x, 1e-6);
   EXPECT_NEAR(a.y, b.y, 1e-6);

@@ -24,6 +24,7 @@ using test::TempDir;
 using test::write_text;
 using ::testing::HasSubstr;
 
+/// Appends the bytes of `value` in memory.
 template <class T>
 void append(std::string& bytes, const T& value) {
   std::array<char, sizeof(T)> raw;
@@ -52,6 +53,7 @@ struct Vol {
   }
 };
 
+/// Reads a *.vol file that consists of these bytes.
 absl::StatusOr<FileGrid> read(const std::string& bytes) {
   return read_vol({reinterpret_cast<const std::byte*>(bytes.data()), bytes.size()});
 }
@@ -237,6 +239,7 @@ TEST(VdbFile, AnEmptyGridIsZero) {
   EXPECT_EQ(*check_grid(grid->grid), 0);
 }
 
+/// Writes the grids to a *.vdb file and reads the grid `name`. Returns the message of the error.
 std::string vdb_error(const openvdb::GridPtrVec& grids, const std::string& name = "density") {
   const TempDir folder;
   return std::string(read_volume(write_vdb(folder, grids), name, "").status().message());
@@ -278,6 +281,7 @@ TEST(VdbFile, AFileOfAnotherFormatIsOneClearError) {
 
 const std::string kHead = "camera { position: [0, 1, 5] look_at: [0, 0, 0] }\n";
 
+/// Imports a scene file of kHead and `text`. Its folder also has four files of volumes.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "a.vol", Vol{}.bytes());

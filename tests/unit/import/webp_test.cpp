@@ -44,6 +44,7 @@ std::string lossless(const std::vector<std::uint8_t>& pixels, bool has_alpha) {
   return bytes;
 }
 
+/// Returns the bytes of the texels of an image.
 std::vector<std::uint8_t> texels(const ImageTexture& image) {
   std::vector<std::uint8_t> out;
   for (const std::byte b : image.texels) {

@@ -336,6 +336,7 @@ TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
   }
 }
 
+/// Expects paths with caustics from maps to have the same mean as paths without maps.
 void expect_same_mean(const Scene& scene, const Ray& ray, std::uint32_t max_depth) {
   test::expect_same_mean(scene, {Casters(scene)}, ray,
                          {.max_depth = max_depth,

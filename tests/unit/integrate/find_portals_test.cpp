@@ -120,7 +120,7 @@ TEST(FindPortals, NeedsRaysThatEscape) {
 }
 
 TEST(FindPortals, LeavesWideOpeningsToTheBsdf) {
-  // The room without its ceiling.
+  // The room has no ceiling, so a large part of all rays escapes, and no portal is needed.
   const Portal ceiling = {{0, 3, 0}, {6, 0, 0}, {0, 0, 8}};
   EXPECT_TRUE(portals_of(rays_of_room({ceiling}, {}, 20000)).empty());
 }
@@ -152,6 +152,7 @@ std::shared_ptr<const Scene> room_with_window() {
   return maker.build();
 }
 
+/// Renders an image of 24 x 16 pixels with 256 samples in each.
 BandPixels pixels_of(const Scene& scene, Integrator integrator) {
   constexpr std::uint32_t kWidth = 24;
   constexpr std::uint32_t kHeight = 16;

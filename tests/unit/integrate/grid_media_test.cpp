@@ -18,6 +18,7 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
+/// Adds a grid to the scene and returns its id.
 GridId add_grid(SceneMaker& maker, VolumeGrid grid) {
   maker.scene.media.grids.push_back(std::move(grid));
   return GridId{static_cast<std::uint32_t>(maker.scene.media.grids.size() - 1)};

@@ -30,6 +30,7 @@ GuidingGain gain_of(const Scene& scene, int threads = 2) {
                         {.max_depth = kDepth}, {pool, kGoOn});
 }
 
+/// Renders an image with 16 samples in each pixel.
 BandPixels pixels_of(const Scene& scene, Integrator integrator) {
   Pool pool(2);
   return *render_band(

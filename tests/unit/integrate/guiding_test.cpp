@@ -40,6 +40,7 @@ test::Moments moments_of(const Scene& scene, const Ray& ray, const GuidingField*
   return moments;
 }
 
+/// Expects that the means agree within 4 standard errors of their difference.
 void expect_equal_means(const test::Moments& a, const test::Moments& b) {
   const double deviation = std::hypot(a.standard_error(), b.standard_error());
   EXPECT_LE(std::abs(a.mean() - b.mean()), 4 * deviation) << a.mean() << " and " << b.mean();

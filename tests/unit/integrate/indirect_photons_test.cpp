@@ -38,6 +38,7 @@ PhotonSources sources_of(const Scene& scene, std::uint32_t max_depth) {
   return {casters, surfaces_of_indirect_light(scene, casters), {}, max_depth};
 }
 
+/// Makes the photon maps of these sources. `photons`: photons that are started for caustics.
 std::shared_ptr<const TracedMaps> maps_of(const Scene& scene, const PhotonSources& sources,
                                           std::uint64_t seed, std::uint64_t photons,
                                           int threads = 2) {
@@ -114,6 +115,7 @@ SceneMaker room_with_a_spot() {
   return maker;
 }
 
+/// Returns ten cases. All except the lit spot are variations of uplit_room().
 std::vector<Case> cases() {
   std::vector<Case> all;
   const auto add = [&](const std::string& name) -> Case& {

@@ -27,6 +27,7 @@ using test::SceneMaker;
 /// Half the width of large floors and slabs.
 constexpr double kFar = 100;
 
+/// A material with a black base colour, which reflects only a little light.
 MetallicRoughness black() {
   MetallicRoughness m;
   m.base_color.factor = {0, 0, 0};

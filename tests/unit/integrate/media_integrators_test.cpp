@@ -16,6 +16,7 @@ using test::SceneMaker;
 
 const Ray kAhead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
 
+/// Returns the value of one sample of this pixel along kAhead.
 Rgb value(const Scene& scene, Integrator integrator, std::uint32_t pixel = 1) {
   PathCounts counts;
   const PathOptions options{.local = integrator == Integrator::kDirect};

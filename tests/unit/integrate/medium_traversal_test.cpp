@@ -56,6 +56,7 @@ void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside
   }
 }
 
+/// Returns a ray with a random direction and an origin in the cube from -spread to spread.
 Ray random_ray(test::Random& random, double spread) {
   const auto number = [&] { return random.uniform(-spread, spread); };
   const double x = number();

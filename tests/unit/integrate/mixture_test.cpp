@@ -124,6 +124,7 @@ TEST(EmissionOfDiffuse, IsAddedAndLightsOthers) {
   EXPECT_EQ(maker.build()->lights().size(), 1u);
 }
 
+/// Returns (n + 1) / 2, where n is the shading normal of the surface that the ray hits.
 Rgb normal_at(const SceneMaker& maker, const Ray& ray) {
   PathCounts counts;
   return sample_value(*maker.build(), Integrator::kNormals, ray, PixelSampler(1, 0, 0), 0, {},

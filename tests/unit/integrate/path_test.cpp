@@ -17,6 +17,7 @@ namespace {
 
 using test::SceneMaker;
 
+/// Returns the radiance along the ray of one sample, which is identified by its number.
 Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOptions& options) {
   PathCounts counts;
   return path_radiance(scene, ray, PixelSampler(1, 2, 3), sample, options, counts);

@@ -17,6 +17,7 @@ namespace {
 
 using test::SceneMaker;
 
+/// Returns the value of one sample along the ray. `sample`: the number of the sample.
 Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
           std::uint64_t sample = 0) {
   PathCounts counts;
