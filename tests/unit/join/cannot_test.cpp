@@ -120,6 +120,9 @@ TEST_F(JoinCannotTest, FindASecretInWhatIsPublic) {
 }
 
 // ---- Blobs and bands ----
+//
+// Blobs are the files of a scene, and one of them, the manifest, names the others. A lease gives a
+// tab a band to render, which is a range of rows and a range of samples.
 
 TEST_F(JoinCannotTest, ReadBlobsBeforeASceneIsLeased) {
   log_in();
@@ -296,13 +299,13 @@ TEST_F(JoinCannotTest, HoldASocketWithoutAHandshake) {
 }
 
 // Either the coordinator's messages for this tab fill the tab's queue, or a message is not sent in
-// time. Both end the tab's session. Neither blocks the scheduler.
+// time. In both cases the tab's session ends, and the scheduler is not blocked.
 TEST_F(JoinCannotTest, HoldUpTheFarmByNotReading) {
   options_.browser_limits.write = std::chrono::milliseconds(200);
   options_.browser_limits.idle = std::chrono::minutes(1);
   options_.browser_limits.send_buffer = 4096;
   start_dashboard();
-  test::SocketClient socket(dashboard_->port(), {.secret = secret_}, 2048);
+  test::SocketClient socket(dashboard_->port(), {.secret = secret_}, /*receive_buffer=*/2048);
   farm::FromWorker message = hello();
   message.mutable_hello()->set_max_bands(16);
   ASSERT_TRUE(socket.send(message));

@@ -18,9 +18,11 @@ class JoinTest : public WebTest {
 
   /// Opens a session with the present link.
   test::SocketClient open() const { return {dashboard_->port(), {.secret = secret_}}; }
-  /// Returns the Hello of a browser that is admitted. Each name is a tab of its own.
+  /// Returns the Hello, the first message of a session, of a browser that is admitted. Different
+  /// names stand for different tabs.
   static farm::FromWorker hello(const std::string& name = "tab");
-  /// Sends Hello in the open session `socket`, reads until the first lease, and returns the lease.
+  /// Sends Hello in the open session `socket`, and reads until the first lease, which is an order
+  /// to render a band. Returns the lease.
   farm::Lease lease_to(test::SocketClient& socket, const std::string& name = "tab") const;
   /// Returns the body of POST /join/band with all samples of the lease. The sum of the samples
   /// is 8 in each channel of each pixel.

@@ -128,7 +128,8 @@ TEST(Qr, ACodeHasAMarkInThreeOfItsCorners) {
   const auto code = qr_code("https://192.168.1.5:8787/join#0123456789abcdefghijkl");
   ASSERT_TRUE(code.ok());
   EXPECT_EQ((code->side - 17) % 4, 0) << "the side must be one that the standard allows";
-  // A mark has 7 x 7 modules, which are dark except for a light ring around the inner 3 x 3.
+  // A mark has 7 x 7 modules (squares of the code). They are dark, except for a light ring around
+  // the inner 3 x 3 modules.
   const auto is_mark = [&](int x0, int y0) {
     for (int y = 0; y < 7; ++y) {
       for (int x = 0; x < 7; ++x) {

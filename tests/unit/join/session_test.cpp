@@ -1,6 +1,7 @@
-// A browser's session over a WebSocket, from its Hello to the last band, and every way in which it
-// ends. Close codes of the standard are 1000 (normal), 1001 (going away) and 1008 (violation of the
-// rules). The close code 4409 is bandsaw's own: another session of the same tab replaced this one.
+// A browser's session over a WebSocket, from its first message, Hello, to the last band, and every
+// way in which a session ends. Close codes of the standard are 1000 (normal), 1001 (going away) and
+// 1008 (violation of the rules). The close code 4409 is bandsaw's own: another session of the same
+// tab replaced this one.
 
 #include <gmock/gmock.h>
 
@@ -68,7 +69,8 @@ TEST_F(JoinSessionTest, ATabThatVanishesIsLost) {
   wait_until([&] { return workers().empty(); });
 }
 
-// A frozen machine closes no connection.
+// A frozen machine closes no connection, so the coordinator must notice that pings are not
+// answered.
 TEST_F(JoinSessionTest, ATabThatNoLongerAnswersIsLost) {
   options_.browser_limits.idle = std::chrono::milliseconds(600);
   start_dashboard();
@@ -143,7 +145,7 @@ TEST_F(JoinSessionTest, ASecondSessionOfATabEndsItsFirst) {
   test::SocketClient first = open();
   ASSERT_TRUE(first.send(hello()));
   ASSERT_TRUE(first.read());
-  test::SocketClient second = open();  // the same instance, which has connected again
+  test::SocketClient second = open();  // the same tab, which has connected again
   ASSERT_TRUE(second.send(hello()));
   ASSERT_TRUE(second.read());
   first.read_to_end();

@@ -1,6 +1,9 @@
 // A browser's session over TLS with the farm's certificate. The same rules hold as without TLS
 // (session_test.cpp). The number of sessions is limited, and each session takes one place. In
 // whatever way the connection of a session breaks, the session must end and free its place.
+//
+// Close codes of the WebSocket standard are 1001 (going away), 1008 (violation of the rules) and
+// 1009 (message too big). The code 4401 is bandsaw's own: the link has ended or was revoked.
 
 #include <gmock/gmock.h>
 
@@ -102,8 +105,8 @@ class SecureTab {
   int code_ = 0;
 };
 
-/// Returns a binary WebSocket frame with a mask of zeros, so that the payload is sent as it is. Its
-/// head announces `size` bytes, at most 65,535; `payload` may be shorter.
+/// Returns a binary WebSocket frame with a mask of zeros, so that the payload is sent unchanged.
+/// The head of the frame announces `size` bytes, at most 65,535; `payload` may be shorter.
 std::string frame(const std::string& payload, std::size_t size) {
   std::string head = "\x82";
   if (size < 126) {
@@ -244,7 +247,7 @@ TEST_F(JoinTlsTest, ATabThatDoesNotReadHoldsUpNobody) {
   options_.browser_limits.write = std::chrono::milliseconds(200);
   options_.browser_limits.send_buffer = 4096;
   SetUp();
-  const auto tab = open_secure(2048);
+  const auto tab = open_secure(/*receive_buffer=*/2048);
   farm::FromWorker message = hello();
   message.mutable_hello()->set_max_bands(16);
   tab->send(message);

@@ -1,5 +1,7 @@
 // A kernel is the code that builds scenes and renders them, compiled for one instruction set. All
-// kernels of a program give the same bits, and a scene is rendered by the kernel that built it.
+// kernels of a program give the same bits, and a scene is rendered by the kernel that built it. The
+// base kernel runs on every machine on which the program runs. kernels() returns the kernels that
+// this machine can run, fastest first.
 
 #include "renderlib/render/kernel.h"
 

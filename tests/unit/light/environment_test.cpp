@@ -60,14 +60,15 @@ float noise(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return static_cast<float>(std::exp2(random.uniform(-6, 4)));
 }
 
+/// Returns skies with images of many sizes, of both kinds, and with turned and mirrored axes.
 std::vector<Sky> skies() {
   std::vector<Sky> all;
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // In the first of these two images, the light of one bright texel reaches across the seam. In the
-  // second image, a whole row at a pole is bright, because one texel at a pole would be too narrow
-  // for the cells over which the test integrates the pdf.
+  // In the image "L8 one texel", the light of one bright texel reaches across the seam. In the
+  // image "L8 pole row", a whole row at a pole is bright, because one texel at a pole would be too
+  // narrow for the cells over which the test integrates the pdf.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
   all.push_back(
@@ -87,6 +88,7 @@ std::vector<Sky> skies() {
   return all;
 }
 
+/// Returns a random direction, uniform over the sphere.
 Vec3 any_direction(Random& random) {
   const double z = random.uniform(-1, 1);
   const double r = std::sqrt(1 - z * z);
@@ -180,7 +182,8 @@ TEST(EnvironmentLight, SamplesHaveThePdfOfTheirDirection) {
 }
 
 /// Returns the integral of f over the directions around a texel, by the midpoint rule. Interpolated
-/// radiance has kinks at the centres of texels, so the cells of the rule have borders there.
+/// radiance has kinks at the centres of texels, so the cells of the rule have borders at the
+/// centres.
 double around_texel(const Sky& sky, std::uint32_t column, std::uint32_t row,
                     absl::FunctionRef<double(const Vec3&)> f) {
   constexpr int kFine = 400;  // cells per texel along a column
@@ -211,6 +214,7 @@ TEST(EnvironmentLight, L8_OneTexelIsSampledWithEqualWeights) {
     const EnvironmentLight light(sky.environment, sky.textures);
     EXPECT_NEAR(around_texel(sky, 30, row, [&](const Vec3& d) { return light.pdf(d); }), 1, 1e-6)
         << row;
+    // The radiance of the texel times the solid angle over which interpolation spreads the texel.
     const double flux = 5 * latitude_tent_solid_angle(row, 10) / 100;
     Random random(row);
     for (int i = 0; i < 5000; ++i) {
@@ -223,6 +227,8 @@ TEST(EnvironmentLight, L8_OneTexelIsSampledWithEqualWeights) {
   test::report_hard_case("L8", "all sample weights are equal, also at the pole");
 }
 
+// EnvironmentLight samples only the light above the mean of all directions. A uniform image has no
+// such light.
 TEST(EnvironmentLight, TheUniformPartIsNotSampled) {
   for (const float value : {0.0f, 1.0f, 0.3f, 1e30f}) {
     const Sky even = equirectangular("even", 33, 17, [&](auto, auto) { return value; });

@@ -19,6 +19,7 @@ namespace {
 
 using test::Random;
 
+/// Returns a random point of the cube from -size to size.
 Vec3 random_point(Random& random, double size) {
   const double x = random.uniform(-size, size);
   const double y = random.uniform(-size, size);
@@ -49,6 +50,7 @@ std::vector<LightBound> lights_of_all_kinds(std::size_t count) {
   return lights;
 }
 
+/// Two points of surfaces with their normals, and a point in a medium, which has no normal.
 std::vector<Receiver> receivers() {
   return {{{0, 0, 0}, Vec3{0, 1, 0}}, {{20, -5, 3}, Vec3{1, 0, 0}}, {{0, 40, 0}, std::nullopt}};
 }
@@ -64,8 +66,9 @@ TEST(LightTree, L7_ProbabilitiesOfManyLightsSumToOne) {
       ASSERT_TRUE(probability > 0 || importance(lights[i], receiver) == 0) << i;
       sum += probability;
     }
-    // If lights face in all directions, both halves of a node may contribute nothing although the
-    // bound of the whole node is above 0. No light is selected then.
+    // The sum may be below 1. If lights face in all directions, the bound of a node of the tree may
+    // be above 0 although neither half of the node can contribute. At such a node, no light is
+    // selected.
     EXPECT_LE(sum, 1 + 1e-12);
     EXPECT_GE(sum, 0.5);
   }
@@ -137,6 +140,8 @@ TEST(LightTree, SelectsCoincidentLightsWithEqualProbability) {
   EXPECT_NEAR(tree.probability({{0, 0, 0}, std::nullopt}, 777), 1.0 / 50000, 1e-6);
 }
 
+// The distance from the origin halves from light to light. A tree that halves the space at each
+// level would have a level for each light.
 TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   std::vector<LightBound> lights;
   for (int i = 0; i < 900; ++i) {
@@ -153,8 +158,8 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-/// A light may be selected if and only if its ball overlaps the cone. It overlaps the cone if the
-/// angle between the axis and the ball's centre (`off`) is below the sum of the cone's angle
+/// A light may be selected if and only if its ball overlaps the cone. The ball overlaps the cone if
+/// the angle between the axis and the ball's centre (`off`) is below the sum of the cone's angle
 /// (`angle`) and the angle at which the ball's radius is seen (`seen`). Cosines resolve angles of
 /// 1.5e-8, so the test leaves out lights whose `off` is within 3e-8 of the sum.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
@@ -185,6 +190,7 @@ TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
 TEST(LightChoice, DistantLightsCanBeChosenBesideThoseOfTheTree) {
   for (const std::size_t count : {3u, 300u}) {
     const std::vector<LightBound> local = lights_of_all_kinds(count);
+    // The two distant lights have the powers 5 and 2 and the numbers `count` and `count` + 1.
     const LightChoice choice(local, {{5, Vec3{0, 1, 0}}, {2, std::nullopt}});
     const Receiver receiver{{0, 0, 0}, Vec3{0, 1, 0}};
     double sum = 0;

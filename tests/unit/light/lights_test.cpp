@@ -20,11 +20,13 @@ namespace {
 using test::Random;
 using test::SceneMaker;
 
+/// A scene with lights.
 struct Case {
   std::string name;
   SceneMaker maker;
 };
 
+/// Returns an image of four texels in a row, each brighter than the one before.
 Texture stripes() {
   ImageTexture image;
   image.width = 4;
@@ -180,7 +182,8 @@ TEST(Lights, DirectionsFollowThePdf) {
     EXPECT_LT(inside, 1.005) << test_case.name;
     expected.back() = kSamples * std::max(0.0, 1 - inside);
     if (expected.back() < kSamples * 0.005) {
-      // The rest is only the error of the sum over directions, so every sample must find a light.
+      // The pdf integrates to 1, up to the error of the sum over directions. So every sample must
+      // find a light.
       expected.back() = 0;
       EXPECT_EQ(counts.back(), 0u) << test_case.name;
     }

@@ -50,12 +50,15 @@ struct EchoServer {
   }
 };
 
+/// Returns the credentials of a server that has the certificate of `identity`.
 std::shared_ptr<grpc::ServerCredentials> tls(const Identity& identity) {
   grpc::SslServerCredentialsOptions options;
   options.pem_key_cert_pairs.push_back({identity.key_pem, identity.certificate_pem});
   return grpc::SslServerCredentials(options);
 }
 
+/// Returns a join string for a port on loopback. `digest`: digest of the certificate; std::nullopt:
+/// plaintext.
 JoinString join_to(int port, std::optional<wire::Digest> digest) {
   JoinString join;
   join.addresses = {"127.0.0.1:" + std::to_string(port)};
@@ -82,7 +85,8 @@ void make_valid_from(Identity& identity, long seconds) {
   identity.certificate_digest = *certificate_digest(identity.certificate_pem);
 }
 
-/// Expects that calls on both channels arrive with the secret of the join string.
+/// Expects that calls on both channels of the connection, `control` and `bulk`, arrive with the
+/// secret of the join string.
 void expect_calls_work(const Connected& connected, const JoinString& join) {
   for (const auto& channel : {connected.control, connected.bulk}) {
     grpc::ClientContext context;
@@ -128,7 +132,8 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
 }
 
 // Join strings name addresses that every machine has, such as loopback. Another farm may run at
-// such an address. The right farm may still exist and be unreachable at the moment.
+// such an address, while the right farm exists and is unreachable at the moment. So the error must
+// be UNAVAILABLE, as for a farm that does not answer, and not UNAUTHENTICATED.
 TEST_F(ConnectTest, AnotherFarmOnThisMachineDoesNotHideThatTheRightFarmIsUnreachable) {
   const EchoServer server(tls(identity_));
   for (const std::string host : {"127.0.0.1", "localhost"}) {
@@ -168,6 +173,7 @@ TEST_F(ConnectTest, TellsThatTheClockIsWrong) {
   const absl::Status status =
       connect(join_to(server.port, identity_.certificate_digest), milliseconds(10'000)).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  // The 2 is the first digit of the year.
   EXPECT_THAT(std::string(status.message()), HasSubstr("this machine's clock says 2"));
   EXPECT_THAT(std::string(status.message()), HasSubstr("set the clock"));
 }

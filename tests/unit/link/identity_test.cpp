@@ -1,4 +1,5 @@
-// The identity file of a farm: its key, certificate and secrets, readable by its owner only.
+// The identity file of a farm holds the key, the certificate and the secrets of the farm. Only the
+// owner of the file can read it.
 
 #include "proto/link/identity.h"
 
@@ -19,11 +20,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Returns the permissions of a file, or 0 if there is no such file.
 unsigned mode_of(const std::string& path) {
   struct stat found {};
   return stat(path.c_str(), &found) == 0 ? found.st_mode & 07777 : 0;
 }
 
+/// Returns the contents of a file.
 std::string slurp(const std::string& path) {
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
@@ -143,7 +146,7 @@ TEST(Identity, NamesThePathThatCannotBeWritten) {
 
 TEST(PrivateFile, IsReadWholeOrNotAtAll) {
   const test::TempDir folder;
-  const std::string longest(1 << 20, 'x');
+  const std::string longest(1 << 20, 'x');  // the largest file that is read
   ASSERT_TRUE(write_private_file(folder / "a", longest).ok());
   EXPECT_EQ(*read_private_file(folder / "a"), longest);
   ASSERT_TRUE(write_private_file(folder / "a", longest + "x").ok());

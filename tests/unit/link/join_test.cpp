@@ -2,7 +2,8 @@
 // are written and read back, and error messages do not repeat the secret in a join string.
 //
 // The parts of a join string are the format version, the role (w: worker, f: farm user), the
-// addresses, the dashboard after a +, the digest of the certificate, and the secret:
+// addresses, the port or the address of the dashboard after a +, the digest of the certificate, and
+// the secret:
 //
 //   bsw1-f-192.168.1.5:7878,10.0.0.5:7878+8787-<43 characters>-<22 characters>
 
@@ -25,6 +26,7 @@ using ::testing::Not;
 const std::string kSecret = "abcdefghijklmnopqrst-_";
 const std::string kDigest43(43, 'A');  ///< a digest of 32 bytes has 43 characters in base64url
 
+/// Returns a join string with three addresses of different forms.
 JoinString example() {
   JoinString join;
   join.role = Role::kFarm;

@@ -53,6 +53,8 @@ struct SilentListener : Listener {
   }
 };
 
+// The function of the deadline is called again and again. connect() must stop when the function
+// returns true.
 TEST(Socket, ConnectStopsWhenItIsInterrupted) {
   const SilentListener silent;
   int calls = 0;
