@@ -29,14 +29,15 @@ SurfacePoint point(const Vec3& geometric, const Vec3& shading) {
   return p;
 }
 
+/// Returns the BSDF for light that is scattered in the direction `wo`. The geometric normal is +z.
 Bsdf bsdf(const Material& material, const Vec3& wo, const Vec3& shading = {0, 0, 1}) {
   return bsdf_at(material, kTextures, point({0, 0, 1}, shading), normalize(wo));
 }
 
 /// Counts sampled directions in cells of equal solid angle around `axis`, and compares the counts
-/// with the integral of the density over each cell. The cells cover the directions whose 1 - cos of
-/// the angle to the axis is below `reach`. All samples that are absorbed, or that fall outside of
-/// these cells, are counted in one further cell.
+/// with the integral of the density over each cell. The cells cover all directions at an angle to
+/// the axis with 1 - cos(angle) < `reach`. One further cell counts the samples that are absorbed or
+/// fall outside of these cells. `name` is printed with a failure.
 void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double reach,
                                    const std::string& name) {
   constexpr int kCells = 12;
@@ -96,6 +97,8 @@ TEST(Bsdf, FuzzyMetalSamplesFollowTheirDensity) {
   for (const double fuzz : {0.001, 0.1, 0.5, 1.0}) {
     for (const Vec3& wo : {Vec3{0.5, 0.2, 1}, Vec3{1, 0.1, 0.15}}) {
       const Vec3 mirror{-wo.x, -wo.y, wo.z};
+      // The sine of the angle between a sampled direction and the mirror direction is at most
+      // `fuzz`.
       const double reach = 1 - std::sqrt(1 - fuzz * fuzz);
       expect_samples_follow_density(bsdf(Metal{{}, fuzz}, wo), mirror, reach,
                                     "fuzz " + std::to_string(fuzz));

@@ -1,4 +1,4 @@
-// Fresnel reflectance and refraction against tables and closed forms.
+// Compares Fresnel reflectances and refracted directions with tables and closed forms.
 
 #include "renderlib/material/fresnel.h"
 
@@ -51,6 +51,7 @@ TEST(Fresnel, ReflectionIsTotalBelowTheCriticalCosineAndContinuousAbove) {
     EXPECT_EQ(fresnel(critical - step, eta), 1);
     const double above = fresnel(critical + step, eta);
     EXPECT_LT(above, 1);
+    // Near the critical cosine, 1 minus the reflectance grows like the square root of the distance.
     EXPECT_GT(above, 1 - 12 * std::sqrt(step));
   }
 }

@@ -20,6 +20,7 @@ namespace {
 using test::Random;
 using test::Wide;
 
+/// Returns a unit direction whose cosine to the normal, +z, is mu.
 Vec3 at_cosine(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
 TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
@@ -38,8 +39,8 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
       "M3", "5,000 values of D within 1e-13 (relative) of values computed with 113-bit numbers");
 }
 
-// The density must integrate to 1 over all facets (the weak white furnace test). Seen from o, the
-// areas of the visible facets sum to the area of the surface.
+// The density must integrate to 1 over all facets (the weak white furnace test), because the areas
+// of the visible facets, as seen from o, sum to the area of the surface.
 TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
   for (const double alpha : {0.35, 0.6, 1.0}) {
     for (const double mu : {0.1, 0.4, 1.0}) {
@@ -49,7 +50,7 @@ TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
           [&](const Vec3& h) {
             return h.z <= 0 ? 0 : ggx_visible_over_cos(o, h, alpha) * std::max(0.0, dot(o, h));
           },
-          static_cast<std::uint64_t>(alpha * 100 + mu * 10), /*tests=*/9);
+          /*seed=*/static_cast<std::uint64_t>(alpha * 100 + mu * 10), /*tests=*/9);
     }
   }
 }

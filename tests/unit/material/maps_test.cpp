@@ -1,5 +1,5 @@
-// Material numbers that vary over a surface. At each point, a material with a map must equal a
-// material that has the map's value at this point as a constant number.
+// Numbers of a material, such as its roughness, that vary over a surface. At each point, a material
+// with a map must equal a material that has the map's value at this point as a constant number.
 
 #include <gtest/gtest.h>
 
@@ -30,6 +30,7 @@ const std::vector<Texture> kTextures = {ConstantTexture{{1, 1, 1}},
                                         CheckerTexture{.even = TextureId{1}, .odd = TextureId{2}}};
 constexpr TextureId kChecker{3};
 
+/// Returns a point with the texture coordinates (u, 0.5) in both sets of uvs.
 SurfacePoint point(double u, const Vec3& normal = {0, 0, 1}) {
   SurfacePoint p;
   p.geometric_normal = p.shading_normal = normal;
@@ -170,8 +171,9 @@ TEST(HeightMap, FollowsAShortRamp) {
 }
 
 /// Expects that `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, for directions on all
-/// sides. The texture kChecker is a half at u = 0.5 and a quarter at u = 1.5. It multiplies the
-/// number of the material, or, of an index of refraction, the part above 1.
+/// sides. The texture kChecker is a half at u = 0.5 and a quarter at u = 1.5. This texture
+/// multiplies the number of the material. If the number is an index of refraction, the texture
+/// multiplies only the part above 1.
 void expect_same(const Material& mapped, const Material& there, const Material& next) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {

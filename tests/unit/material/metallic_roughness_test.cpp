@@ -34,6 +34,7 @@ SurfacePoint point(const Vec3& shading) {
   return p;
 }
 
+/// Returns the BSDF for light that is scattered in the direction `wo`. The geometric normal is +z.
 Bsdf bsdf(const Material& material, const Vec3& wo, const Vec3& shading = {0, 0, 1}) {
   return bsdf_at(material, kTextures, point(shading), normalize(wo));
 }
@@ -43,6 +44,7 @@ struct Named {
   Material material;
 };
 
+/// Returns glTF's material with these numbers.
 MetallicRoughness layered(double metallic, double roughness) {
   MetallicRoughness m;
   m.metallic.factor = metallic;
@@ -50,6 +52,7 @@ MetallicRoughness layered(double metallic, double roughness) {
   return m;
 }
 
+/// Returns variations of glTF's material and of glass, with this roughness.
 std::vector<Named> all_materials(double roughness) {
   MetallicRoughness tinted = layered(0.4, roughness);
   tinted.base_color = {TextureId{1}, {0.9f, 1, 0.5f}};
@@ -147,7 +150,7 @@ TEST(MetallicRoughness, ReflectionIsReciprocal) {
   Random random(6);
   for (const auto& [name, material] : all_materials(0.5)) {
     if (name == "bumped") {
-      continue;  // its shading normal depends on wo, towards which it is bent
+      continue;  // the shading normal is bent towards wo, so it depends on wo
     }
     const bool glass = std::holds_alternative<Dielectric>(material.kind);
     for (int i = 0; i < 5000; ++i) {
@@ -298,6 +301,8 @@ TEST(ShadingNormal, NormalsThatFaceAwayAreBentAsLittleAsNeeded) {
     ASSERT_NEAR(length(bent), 1, 1e-12);
     ASSERT_GT(dot(wo, bent), 0);
     ASSERT_GT(mirrored(wo, bent).z, 0);
+    // A normal that faces wo is kept if the mirror image of wo has a cosine of more than about 0.01
+    // to the geometric normal.
     if (dot(wo, n) > 0 && mirrored(wo, n).z > 0.011) {
       ASSERT_EQ(bent, n);
     }

@@ -38,10 +38,12 @@ SurfacePoint point(const Vec3& shading = {0, 0, 1}) {
   return p;
 }
 
+/// Returns the BSDF for light that is scattered in the direction `wo`. The geometric normal is +z.
 Bsdf bsdf(const Material& material, const Vec3& wo, const Vec3& shading = {0, 0, 1}) {
   return bsdf_at(material, kTextures, point(shading), normalize(wo));
 }
 
+/// Returns microfacets with the alpha `u` along the first tangent and `v` along the second.
 Microfacets rough(double u, double v, Distribution distribution = Distribution::kGgx,
                   Masking masking = Masking::kSeparable) {
   return {distribution, masking, u, v};
@@ -62,6 +64,7 @@ struct Named {
   bool conserves_energy = true;  ///< reflects at most what it receives, by definition
 };
 
+/// Returns a principled material after `set` has changed it.
 Named principled(const std::string& name, const std::function<void(Principled&)>& set) {
   Principled m;
   m.base_color = kTinted;
@@ -180,7 +183,8 @@ Vec3 along(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
 // Mitsuba's principled definition adds its layers up, so a principled material may scatter more
 // light than it receives. With these base colours and at grazing angles, "layered" scatters up to
-// 2.5 times as much light as it receives. The others scatter up to 1.35 times as much.
+// 2.5 times the light that it receives. The other principled materials scatter up to 1.35 times the
+// light that they receive.
 TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
   for (const Named& named : all_materials()) {
     for (const double mu : {1.0, 0.7, 0.3, 0.05, -0.4, -0.05}) {

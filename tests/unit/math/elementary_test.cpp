@@ -44,6 +44,7 @@ int quarter_of_turn(Quad x) {
   return static_cast<int>(std::nearbyint(4 * static_cast<double>(x))) & 3;
 }
 
+/// Returns the sine of x turns.
 Quad sin_turns_oracle(Quad x) {
   const Quad angle = 2 * test::pi() * rest_of_turn(x);
   switch (quarter_of_turn(x)) {
@@ -98,6 +99,7 @@ const std::vector<Case>& cases() {
   return all;
 }
 
+/// Returns a random argument of the function.
 double draw(const Case& c, test::Random& random) {
   return c.logarithmic ? std::exp(random.uniform(std::log(c.lo), std::log(c.hi)))
                        : random.uniform(c.lo, c.hi);

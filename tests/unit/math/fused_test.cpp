@@ -16,6 +16,7 @@ namespace {
 
 using Bits = std::uint64_t;
 
+/// Returns true if a and b have the same bits, or if both are NaN.
 bool same(double a, double b) {
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b) || (std::isnan(a) && std::isnan(b));
 }
@@ -113,8 +114,8 @@ TEST(EmulatedFma, EqualsFmaIfTheSumIsNearAMiddle) {
   for (int i = 0; i < 1'000'000; ++i) {
     const double c = numbers.near_one(3);
     const double half = std::ldexp(1.0, std::ilogb(c) - 53);
-    // Products of about half the last bit of c: 2^k (1 + x)(1 - x) with a small x, which is exactly
-    // 2^k (1 - x^2).
+    // The products are about half the last bit of c. For example, 2^k (1 + x) (1 - x) with a small
+    // x is exactly 2^k (1 - x^2).
     const double x = std::ldexp(1.0, -static_cast<int>(numbers.below(53)));
     expect_same(half * (1 + x), 1 - x, c);
     expect_same(half * (1 + x), 1 + x, c);

@@ -12,6 +12,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the largest difference between elements of the two matrices.
 double difference(const Transform& a, const Transform& b) {
   double worst = 0;
   for (std::size_t i = 0; i < 3; ++i) {

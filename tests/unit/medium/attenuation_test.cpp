@@ -1,6 +1,6 @@
-// Transmittance and emission of homogeneous media, for very thin and very dense ones too. reach()
-// is an effective length: the integral of the transmittance over a segment. An id such as V1 in a
-// test's name is that of a case in tests/hard_cases/cases.txt.
+// Transmittance and emission of homogeneous media, also of very thin and very dense media. reach()
+// is the integral of the transmittance over a segment, called the effective length. An id such as
+// V1 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/medium/attenuation.h"
 

@@ -1,4 +1,4 @@
-// The colour of black bodies.
+// The colour and the luminance of the light that black bodies emit.
 
 #include "renderlib/medium/blackbody.h"
 
@@ -45,7 +45,8 @@ TEST(Blackbody, LuminanceIsThatOfTheScale) {
         1, 1e-5)
         << kelvin;
   }
-  // The spectrum is at most 1, and about 1 all over the visible range near 5200 K.
+  // The spectrum is at most 1. At temperatures near 5200 K, it is about 1 in the whole visible
+  // range.
   for (double kelvin = 1000; kelvin < 1e5; kelvin *= 1.1) {
     EXPECT_LE(luminance(blackbody(kelvin, BlackbodyScale::kPeak)), 1.0001f);
   }
