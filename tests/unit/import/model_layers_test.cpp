@@ -68,7 +68,7 @@ void write_models(const TempDir& folder) {
 
 class ModelLayers : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ModelLayers, AreTheImagesOfTheModel) {
+TEST_P(ModelLayers, ShowTheColoursOfTheTextureAndTheNormalsOfTheMap) {
   const TempDir folder;
   write_models(folder);
   const Image albedo = seen(folder, GetParam(), Integrator::kAlbedo);

@@ -174,7 +174,7 @@ std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   return nearest;
 }
 
-TEST(ModelSource, TheSpidersLayersAreItsTexelsAndNormals) {
+TEST(ModelSource, TheSpidersAlbedoAndNormalsAreThoseOfItsFiles) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "the package assimp-testmodels is not installed";
   }

@@ -87,7 +87,7 @@ TEST(SceneTexture, NoiseHasDefaultsAndReadsItsFields) {
   EXPECT_EQ(noise.space, Space::kObject);
 }
 
-TEST(SceneTexture, UsesOfANamedTextureShareIt) {
+TEST(SceneTexture, AllUsesOfANamedTextureShareOneTexture) {
   const auto imported = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }

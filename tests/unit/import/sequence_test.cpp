@@ -91,7 +91,7 @@ constexpr char kScene[] = R"(
   light { point { position: [0, 1, 0] intensity { rgb: [1, 1, 1] } } }
   shape { sphere { radius: 1 } material: "lamp" })";
 
-TEST_F(Sequence, TracksSetFieldsInTheMiddleOfTheExposure) {
+TEST_F(Sequence, TracksSetFieldsToTheirValuesInTheMiddleOfTheExposure) {
   const std::string text = std::string(kScene) + R"(
     track { field: "light[0].point.position"
             key { time: 0 value: [0, 1, 0] } key { time: 4 value: [8, 1, 0] } }

@@ -169,7 +169,7 @@ openvdb::FloatGrid::Ptr sparse_grid(const std::string& name) {
   return grid;
 }
 
-TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
+TEST(VdbFile, IsReadWithTheValuesAndPlacementOfOpenVdb) {
   const TempDir folder;
   const auto grid = sparse_grid("density");
   const std::string path = write_vdb(folder, {grid, sparse_grid("other")});

@@ -112,7 +112,7 @@ TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   EXPECT_NEAR(sum.mean(), irradiance / (2 * 3.14159265358979), 0.02 * sum.mean());
 }
 
-TEST(EmissionOfDiffuse, IsAddedAndLightsOthers) {
+TEST(EmissionOfDiffuse, IsAddedToTheReflectionAndMakesALight) {
   SceneMaker maker = with_sky(1);
   Material glow = Diffuse{TextureId{0}};
   glow.emission = {{TextureId{0}, {3, 3, 3}}, true};

@@ -61,7 +61,7 @@ TEST(Path, AMirroredEmitterIsScaledByTheReflectance) {
   expect_always(*maker.build(), kAhead, 3.5, 1e-6);
 }
 
-TEST(Path, LosslessGlassAndMirrorsAreInvisibleInAUniformSky) {
+TEST(Path, LosslessSurfacesAreInvisibleInAUniformSky) {
   for (const double x : {0.0, 0.5, 0.9, 0.99, 0.999}) {
     const Ray ray{.origin = {x, 0, 5}, .direction = {0, 0, -1}};
     SceneMaker glass;

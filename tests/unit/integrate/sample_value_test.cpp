@@ -73,7 +73,7 @@ TEST(SampleValue, GuidesAreThoseOfTheFirstSurfaceThatIsNoMirror) {
   EXPECT_NEAR(value(mirror, kGuideShape, kAhead).b, 5 + 8, 1e-4);
 }
 
-TEST(SampleValue, AlbedoOfAnEmitterIsClampedAndOfGlassWhite) {
+TEST(SampleValue, TheAlbedoOfAnEmitterIsClampedAndTheAlbedoOfGlassIsWhite) {
   SceneMaker maker;
   maker.sphere({0.1, 0.2, 0}, 1, maker.lamp(3));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(1));
@@ -215,7 +215,7 @@ TEST(SampleValue, DirectContinuesAtMirrorsAndGlass) {
   expect_mean(glass, Integrator::kDirect, kAhead, 2);
 }
 
-TEST(SampleValue, NamesRoundTrip) {
+TEST(SampleValue, IntegratorsAreFoundByTheirNames) {
   for (int i = 0; i <= kLastIntegrator; ++i) {
     const auto integrator = static_cast<Integrator>(i);
     EXPECT_EQ(integrator_named(integrator_name(integrator)), integrator);

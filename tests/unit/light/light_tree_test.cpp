@@ -55,7 +55,7 @@ std::vector<Receiver> receivers() {
   return {{{0, 0, 0}, Vec3{0, 1, 0}}, {{20, -5, 3}, Vec3{1, 0, 0}}, {{0, 40, 0}, std::nullopt}};
 }
 
-TEST(LightTree, L7_ProbabilitiesOfManyLightsSumToOne) {
+TEST(LightTree, L7_ProbabilitiesOfManyLightsSumToAtMostOneAndOfSpheresToOne) {
   const std::vector<LightBound> lights = lights_of_all_kinds(100000);
   const LightTree tree(lights);
   {

@@ -185,7 +185,7 @@ Vec3 along(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 // light than it receives. With these base colours and at grazing angles, "layered" scatters up to
 // 2.5 times the light that it receives. The other principled materials scatter up to 1.35 times the
 // light that they receive.
-TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
+TEST(Surfaces, OnlyPrincipledMaterialsScatterMoreThanTheyReceive) {
   for (const Named& named : all_materials()) {
     for (const double mu : {1.0, 0.7, 0.3, 0.05, -0.4, -0.05}) {
       const test::Moments sum = albedo_of(bsdf(named.material, along(mu)), 4000);

@@ -15,7 +15,7 @@ namespace bandsaw {
 namespace {
 
 /// Small extinctions keep their precision, and without extinction all light passes.
-TEST(Attenuation, V1_IsExactForLittleExtinctionAndOneForNone) {
+TEST(Attenuation, V1_TransmittanceIsExactForLittleExtinctionAndOneWithoutExtinction) {
   EXPECT_EQ(transmittance(0, 1), 1);
   EXPECT_EQ(transmittance(0, kInfinity), 1);
   EXPECT_EQ(reach(0, 7), 7);
@@ -32,7 +32,7 @@ TEST(Attenuation, V1_IsExactForLittleExtinctionAndOneForNone) {
 }
 
 /// Very dense media are opaque, and no number overflows in the computation.
-TEST(Attenuation, V3_IsZeroForVeryDenseMedia) {
+TEST(Attenuation, V3_TransmittanceIsZeroForVeryDenseMedia) {
   for (const double sigma : {1e6, 1e12, 2e12}) {
     EXPECT_EQ(transmittance(sigma, kInfinity), 0);
     EXPECT_EQ(transmittance(sigma, 1e30), 0);
