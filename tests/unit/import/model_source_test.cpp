@@ -184,7 +184,7 @@ TEST(ModelSource, TheSpidersAlbedoAndNormalsAreThoseOfItsFiles) {
   ASSERT_TRUE(imported.ok()) << imported.status();
   constexpr std::uint32_t kWidth = 120;
   constexpr std::uint32_t kHeight = 80;
-  constexpr double kPixel = 1.4;
+  constexpr double kPixel = 1.4;  // width of a pixel; the middle of the image is at (-17, -2)
   imported->scene.filter = {PixelFilter::Kind::kBox, 0};
   imported->scene.camera = OrthographicCamera{
       .position = {-17, -2, 500}, .look_at = {-17, -2, 0}, .height = kPixel * kHeight};
@@ -203,8 +203,8 @@ TEST(ModelSource, TheSpidersAlbedoAndNormalsAreThoseOfItsFiles) {
       }
       ++compared;
       const std::size_t i = row * kWidth + column;
-      // A texel times Kd is rounded to an 8-bit code again. The error is half a code, which is at
-      // most 0.0045 in linear light.
+      // A texel times Kd is rounded to an 8-bit code again. The error of half a code is at most
+      // 0.0045 in linear light.
       const Rgb& seen = albedo.pixels[i];
       EXPECT_LE(max_abs(Vec3{seen.r, seen.g, seen.b} - hit->albedo), 0.0046)
           << "at " << column << ", " << row;

@@ -1,4 +1,4 @@
-// Scene files of the renderer pbrt-v4: how they are converted to scene files of our own format,
+// Scene files of the renderer pbrt-v4: how they are converted to scene files of bandsaw's format,
 // what is left out with a warning, and what is refused.
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
   return converted.ok() ? converted->warnings : std::vector<std::string>();
 }
 
-// The axes of pbrt's camera are left-handed, and the axes of our cameras are right-handed.
+// The axes of pbrt's camera are left-handed, and the axes of bandsaw's cameras are right-handed.
 TEST(Pbrt, CamerasAreMirroredUnlessTheTransformFlipsThem) {
   const auto scene = scene_of(
       "LookAt 1 2 -5  1 2 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"

@@ -71,8 +71,7 @@ test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t
 TEST(Branches, HaveTheMeanOfUnsplitPaths) {
   for (const bool behind_glass : {false, true}) {
     const auto scene = corner(behind_glass).build();
-    // The branches of sample 7 equal the unsplit samples 28 to 31, so they do not depend on sample
-    // 0.
+    // The branches of sample 7 equal the unsplit samples 28 to 31, which differ from sample 0.
     const test::Moments one = moments_of(*scene, /*sample=*/0, /*branches=*/1);
     const test::Moments four = moments_of(*scene, /*sample=*/7, /*branches=*/4);
     const double deviation = std::hypot(one.standard_error(), four.standard_error());

@@ -177,8 +177,8 @@ void move(SceneMaker& maker, const Vec3& offset) {
 }
 
 // Near an edge of the room, a part of a photon's disk lies beyond the surface. The map corrects the
-// power of such photons, so the disks on a surface have together the power that arrived there.
-// Far from the origin of the world, the map must be as precise as near it.
+// power of such photons, so together the disks on a surface have the power that arrived at the
+// surface. Far from the origin of the world, the map must be as precise as near the origin.
 void expect_no_power_is_lost_at_edges(const Vec3& offset) {
   SceneMaker maker = lamp_in_glass(1.5, 0.02);
   move(maker, offset);

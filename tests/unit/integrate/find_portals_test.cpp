@@ -85,7 +85,7 @@ bool covers(const Portal& portal, const Portal& window) {
   return inside;
 }
 
-/// Expects that there is one portal for each window, and that it covers the window.
+/// Expects as many portals as windows, and for each window a portal that covers it.
 void expect_windows(const Portals& portals, const std::vector<Portal>& windows, const Axes& axes) {
   ASSERT_EQ(portals.portals().size(), windows.size());
   for (const Portal& window : windows) {

@@ -45,8 +45,8 @@ VolumeGrid constant(float density) {
   return grid;
 }
 
-/// Adds the box from -1 to 1, filled with this medium. The box and its medium are in a frame, a
-/// coordinate system with this placement and with these keys of its motion.
+/// Adds the box from -1 to 1, filled with this medium. The box and its medium move with a frame, a
+/// coordinate system that has the transform `placement` and the motion `keys`.
 void fill_placed(SceneMaker& maker, MediumId inside, const Transform& placement,
                  std::vector<Key> keys = {Key(0, {})}) {
   test::fill_box(maker, {-1, -1, -1}, {1, 1, 1}, inside);

@@ -49,10 +49,10 @@ std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
   return maker.build();
 }
 
-// The lamp is straight in front of the wall, and w is its solid angle. So a cosine-distributed
-// direction reaches the lamp with probability w / pi. All directions that reach it carry the same
-// light. So the second moment is pi / w times the squared mean, and the variance is pi / w - 1
-// times the squared mean.
+// The lamp is straight in front of the wall, and w is the solid angle of the lamp. So a
+// cosine-distributed direction reaches the lamp with probability w / pi. All directions that reach
+// the lamp carry the same light. So the second moment is pi / w times the squared mean, and the
+// variance is pi / w - 1 times the squared mean.
 TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   for (const double lamp : {0.05, 0.1, 0.2, 0.3, 0.4}) {
     const double solid_angle = kPi * lamp * lamp / 4;

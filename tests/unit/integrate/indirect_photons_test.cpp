@@ -167,8 +167,8 @@ TEST(IndirectPhotons, ChangeNoMean) {
   }
 }
 
-/// Traces 500 photons from the lit ones of 2,000 random points. `power`: if it is not null,
-/// receives the luminance of all light that leaves these points.
+/// Traces 500 photons. They start at those of 2,000 random points that are lit. `power`: if it is
+/// not null, receives the luminance of all light that leaves these points.
 TracedPhotons traced_500(const Scene& scene, const PhotonSources& sources,
                          double* power = nullptr) {
   const TracedMaps none;

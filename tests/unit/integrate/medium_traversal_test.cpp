@@ -123,8 +123,8 @@ Mesh corner_prism() {
   return mesh;
 }
 
-/// A ray may enter and leave a non-convex mesh several times. Boxes and shapes with mirrored
-/// placements are closed shapes like others.
+/// A ray may enter and leave a non-convex mesh several times. Boxes count as closed shapes too, and
+/// so do shapes with mirrored placements.
 TEST(MediumTraversal, V6_SegmentsAreInsideMeshes) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 1));

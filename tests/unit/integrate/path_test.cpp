@@ -17,7 +17,7 @@ namespace {
 
 using test::SceneMaker;
 
-/// Returns the radiance along the ray of one sample, which is identified by its number.
+/// Returns the radiance along `ray` of the sample with the number `sample`.
 Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOptions& options) {
   PathCounts counts;
   return path_radiance(scene, ray, PixelSampler(1, 2, 3), sample, options, counts);
@@ -142,8 +142,8 @@ TEST(Path, RadianceInGlassScalesWithTheSquaredIndex) {
 }
 
 TEST(Path, MaxDepthLimitsTheNumberOfScatterings) {
-  // Two mirrors face each other. Every reflection halves the light of a source at their side. The
-  // ray is reflected three times before it hits the source.
+  // Two mirrors face each other, and a lamp is beside them. Every reflection halves the light of
+  // the lamp. The ray is reflected three times before it hits the lamp.
   SceneMaker maker;
   const MaterialId mirror = maker.metal(0.5f, 0);
   maker.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, mirror);

@@ -24,9 +24,9 @@ struct MeanComparison {
   double max_deviation = 0;   ///< maximum standard error of the difference, relative to the mean
 };
 
-/// Expects paths along rays near `ray` to have the same mean with maps of these sources as without
-/// maps. The tolerance is 4 standard errors (a false alarm in 1 of 16,000 comparisons) plus 1 % for
-/// the blur of the maps. The paths without maps are guided, because they would be too noisy
+/// Expects the mean radiance along rays near `ray` to be the same with maps of these sources and
+/// without maps. The tolerance is 4 standard errors (a false alarm in 1 of 16,000 comparisons) plus
+/// 1 % for the blur of the maps. The paths without maps are guided, because they would be too noisy
 /// otherwise.
 inline void expect_same_mean(const Scene& scene, const PhotonSources& sources, const Ray& ray,
                              const MeanComparison& size) {

@@ -121,8 +121,8 @@ TEST_F(JoinCannotTest, FindASecretInWhatIsPublic) {
 
 // ---- Blobs and bands ----
 //
-// Blobs are the files of a scene, and one of them, the manifest, names the others. A lease gives a
-// tab a band to render, which is a range of rows and a range of samples.
+// A scene is stored as blobs: the manifest, and the blobs that the manifest names. A lease gives a
+// tab a band to render. A band is a range of rows and a range of samples of these rows.
 
 TEST_F(JoinCannotTest, ReadBlobsBeforeASceneIsLeased) {
   log_in();

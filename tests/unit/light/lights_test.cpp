@@ -132,7 +132,8 @@ TEST(Lights, O4_VisibleSamplesAreNotSelfShadowed) {
 }
 
 // Counts samples in cells of equal solid angle above the plane y = 0. Each count must agree with
-// the integral of the pdf over the cell, which is a sum over kSteps x kSteps directions.
+// the integral of the pdf over the cell. The integral is computed as a sum over kSteps x kSteps
+// directions.
 TEST(Lights, DirectionsFollowThePdf) {
   constexpr int kRings = 12;
   constexpr int kSectors = 16;

@@ -1,8 +1,8 @@
 #pragma once
 
 // Reference values for elementary_test.cpp: elementary functions with more precision than double.
-// With g++ on x86-64 they are the functions of libquadmath. Elsewhere they are the functions of the
-// C library in long double, which has 80 bits with clang on x86-64 and 128 bits on ARM64.
+// With g++ on x86-64 the functions come from libquadmath. Elsewhere they come from the C library
+// and use long double, which has 80 bits with clang on x86-64 and 128 bits on ARM64.
 
 #include <cmath>
 
