@@ -39,6 +39,12 @@ struct Extent {
   void add(const Vec3& p);
 };
 
+/// A PLY file that our scene uses as it is, so that its vertices are not in the Extent yet.
+struct UnchangedFile {
+  Parameters parameters;  ///< of the plymesh
+  Transform to_world;
+};
+
 struct Builder {
   explicit Builder(const ForeignScene& scene) : from(scene), made(scene.name) {}
 
@@ -53,6 +59,7 @@ struct Builder {
   double end_time = 1;      ///< seconds, when the motion ends
   bool has_motion = false;  ///< something in the scene moves
   Extent extent;
+  std::vector<UnchangedFile> unchanged_files;
 
   /// Textures of colours and textures of numbers, by their names in the pbrt scene.
   std::map<std::string, scene::Texture> color_textures;

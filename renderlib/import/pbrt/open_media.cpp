@@ -6,12 +6,28 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/pbrt/mesh_shapes.h"
 
 namespace bandsaw::pbrt {
 namespace {
+
+/// Adds the vertices of the unchanged files to the extent of the scene. They are read only if a
+/// medium needs the extent.
+absl::Status add_unchanged_files(Builder& builder) {
+  for (const UnchangedFile& file : std::exchange(builder.unchanged_files, {})) {
+    ASSIGN_OR_RETURN(const auto mesh, mesh_of("plymesh", file.parameters, builder));
+    if (mesh) {
+      for (const auto& p : mesh->positions) {
+        builder.extent.add(file.to_world.point({p[0], p[1], p[2]}));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
 
 /// Fills the box around the scene with each medium that an open surface bounds, except the camera's
 /// medium. Returns the names that these media have in our scene.
@@ -30,6 +46,7 @@ absl::StatusOr<std::set<std::string>> fill_open_media(const std::string& of_came
     builder.warn(place, absl::StrCat("the medium \"", name,
                                      "\" is bounded by open surfaces: it fills the box around "
                                      "the scene's shapes"));
+    RETURN_IF_ERROR(add_unchanged_files(builder));
     const Vec3 size = builder.extent.high - builder.extent.low;
     const double margin = 1e-4 * max_abs(size);
     const Vec3 edge{margin, margin, margin};

@@ -272,7 +272,11 @@ absl::Status add_mesh(Shape& shape, Sides sides) {
     if (is_plain_file(shape, file, sides)) {
       ASSIGN_OR_RETURN(const auto bytes,
                        read_or_warn(file, shape.place(), "the shape is left out", shape.builder));
-      return bytes ? add_model(shape, file, /*closed=*/false, sides) : absl::OkStatus();
+      if (!bytes) {
+        return absl::OkStatus();
+      }
+      shape.builder.unchanged_files.push_back({shape.parameters, shape.state.transforms[0]});
+      return add_model(shape, file, /*closed=*/false, sides);
     }
   }
   ASSIGN_OR_RETURN(auto mesh, mesh_of(shape.type, shape.parameters, shape.builder));

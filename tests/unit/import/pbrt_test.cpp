@@ -536,6 +536,26 @@ TEST(Pbrt, MediaFillClosedShapes) {
   EXPECT_EQ(scene.shape(0).material(), "");
 }
 
+TEST(Pbrt, TheBoxOfAMediumWithOpenSurfacesContainsMeshesThatStayFiles) {
+  const TempDir dir;
+  write_text(dir, "far.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+             "end_header\n0 0 0\n50 0 0\n0 0 -40\n3 0 1 2\n");
+  const auto converted =
+      convert(dir,
+              "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+              "Shape \"plymesh\" \"string filename\" \"far.ply\"\nMediumInterface \"fog\" \"\"\n"
+              "Material \"interface\"\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  ASSERT_EQ(converted->scene.model_size(), 1);
+  EXPECT_EQ(converted->scene.model(0).file(), "far.ply") << "the file must be used unchanged";
+  ASSERT_EQ(converted->scene.shape_size(), 1);
+  const scene::Box& box = converted->scene.shape(0).box();
+  EXPECT_GT(box.max(0), 50);
+  EXPECT_LT(box.min(2), -40);
+}
+
 TEST(Pbrt, AGridOfEmissionScalesIsLeftOutAndASingleScaleIsApplied) {
   const auto text = [](const std::string& scales) {
     return "WorldBegin\nMakeNamedMedium \"fire\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
