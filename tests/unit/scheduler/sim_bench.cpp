@@ -48,11 +48,12 @@ class Bench {
     double begun_at = -1;             ///< when the first was begun
     double takes = 0;                 ///< seconds that the first takes
     double idle_since = 0;            ///< if the queue is empty
-    /// Number of calls of begin(). If it has grown when a band ends, that band was revoked, and its
-    /// end is ignored.
+    /// Number of calls of begin(). If the number has grown between the beginning and the end of a
+    /// band, the band was revoked, and its end is ignored.
     std::uint64_t turn = 0;
   };
 
+  /// Lets worker i join, with the versions of test_options().
   void hello(std::size_t i) {
     WorkerHello hello;
     hello.instance = hello.name = std::to_string(i + 1);
@@ -64,6 +65,7 @@ class Bench {
     take(scheduler_.step(input::Hello{i + 1, hello}, agenda_.now()));
   }
 
+  /// Sends a Tick to the scheduler and notes the remaining time that it predicts, every 0.1 s.
   void tick() {
     take(scheduler_.step(input::Tick{}, agenda_.now()));
     predicted_left_[agenda_.now()] = scheduler_.job(1, agenda_.now())->remaining_s;

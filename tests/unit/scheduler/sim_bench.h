@@ -1,8 +1,9 @@
 #pragma once
 
 // Measures the scheduler's efficiency on a farm that is simulated in virtual time, without
-// failures. The time of a band follows from a given cost of each row. A job's last phase, its tail,
-// is the time in which some workers have nothing left to do.
+// failures. A band is a range of rows and samples that one worker renders. The time that a band
+// takes follows from a given cost of each row. A job's last phase, its tail, is the time in which
+// some workers have nothing left to do.
 
 #include <cstdint>
 #include <functional>

@@ -231,8 +231,9 @@ void SimCoordinator::tell_passes(JobId job) {
     const std::uint64_t samples = *filming.pass_ends.begin();
     filming.reported.insert(samples);
     filming.pass_ends.erase(filming.pass_ends.begin());
-    // The last pass that is planned ends at an error checkpoint. Nothing may be rendered beyond it,
-    // so that the same job stops at the same sample on every farm.
+    // A job with an error target decides at checkpoints (numbers of samples) if its error is small
+    // enough. The last planned pass ends at a checkpoint. Nothing may be rendered beyond the
+    // checkpoint, so that the same job stops at the same sample on every farm.
     const bool at_checkpoint =
         std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
     if (at_checkpoint && filming.film.last_sample() != samples) {

@@ -27,6 +27,8 @@ using ToWorker = std::function<void(const Action&)>;
 /// its job is over or not known. kTryAgain: the disk is full; the worker keeps the band.
 enum class PutOutcome { kStored, kDuplicate, kUnwanted, kTryAgain };
 
+/// A pass is a range of samples that is rendered for all rows. A worker is quarantined, that is,
+/// gets no more work, when its pixels were wrong.
 class SimCoordinator {
  public:
   SimCoordinator(Agenda& agenda, Chance& chance) : agenda_(agenda), chance_(chance) {}
@@ -71,9 +73,9 @@ class SimCoordinator {
   double audit_share = 0;
   double browser_audit_share = 0.1;
   Browsers browsers = Browsers::kAlso;
-  /// Requires that no image has a wrong row. If some machines return wrong pixels, this can be
-  /// required only if all their bands are audited and machines that return right pixels stay
-  /// connected until the end.
+  /// Requires that no image has a wrong row. A farm with machines that return wrong pixels can
+  /// fulfil this under two conditions: all bands of these machines are audited, and machines that
+  /// return right pixels stay connected until the end.
   bool must_be_right = false;
   std::set<std::string> quarantined;  ///< names of workers that were quarantined in any epoch
   bool tear_steps = false;            ///< a crash may keep a part of a step's records
@@ -119,19 +121,23 @@ class SimCoordinator {
   void after(double seconds, std::function<void()> what);
   /// Calls `what` later, after all earlier calls that were given to on_film, as on one thread.
   void on_film(std::function<void()> what);
+  /// Puts a band on disk and gives it to the scheduler. Calls `reply` when the scheduler's records
+  /// are in the journal.
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
+  /// Merges these rows of a band into the film of the job.
   void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
   /// Reports to the scheduler each pass whose samples are all in the film.
   void tell_passes(JobId job);
   /// Removes the damaged records from the film, and reports them to the scheduler later.
   void find_damage(JobId job, const std::vector<Added>& records);
-  /// Gives a report of damaged bands to the scheduler. The bands that it declares lost are no
-  /// longer stored.
+  /// Gives a report of damaged bands to the scheduler. The bands that the scheduler declares lost
+  /// are no longer stored.
   void take_damaged(const input::BandsDamaged& damaged);
   /// Writes the image, as soon as the film has all its samples, and checks it.
   void write_result(const action::WriteResult& write);
   /// Keeps the parts of a record that the simulation needs: jobs, quarantines, ends of passes.
   void note(const Record& record);
+  /// Sends a Tick to the scheduler now, and again and again until the coordinator crashes.
   void tick();
 
   Agenda& agenda_;

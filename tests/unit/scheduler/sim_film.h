@@ -93,8 +93,8 @@ class SimFilm {
     return last;
   }
 
-  /// Returns a row with a wrong digest: one of its sample ranges that begin before `end` has a
-  /// digest other than honest(samples, row). std::nullopt: all digests are right.
+  /// Checks all sample ranges that begin before `end`. Returns the first row with a range whose
+  /// digest is not honest(samples, row). std::nullopt: all digests are right.
   template <class Honest>
   std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
     for (const auto& [row, parts] : rows_) {

@@ -44,7 +44,8 @@ class Agenda {
     items_.emplace(std::pair(std::max(time, now_), order_++), std::move(what));
   }
   void in(double seconds, std::function<void()> what) { at(now_ + seconds, std::move(what)); }
-  /// Sets the time to that of the next event and runs it. Returns false if there is none.
+  /// Sets the time to the time of the next event, and runs the event. Returns false if no event is
+  /// left.
   bool run_next() {
     if (items_.empty()) {
       return false;

@@ -155,7 +155,7 @@ void SimWorker::take(const action::Lease& lease) {
     held->epoch = epoch_;
     return;
   }
-  // A scene needs 4 bytes of memory for each byte of its package (Eligibility).
+  // The scheduler assumes that a scene needs 4 bytes of memory for each byte of its package.
   if (nature_.memory_bytes > 0 &&
       4 * coordinator_.package_bytes(lease.job) > nature_.memory_bytes) {
     coordinator_.fail(absl::StrCat("job ", lease.job, " is too large for ", name_));
@@ -273,7 +273,8 @@ void SimWorker::send(const input::BandStored& band, LeaseId id) {
     later(chance_.between(0.001, 0.05), [this, id] { drop(id); });
   };
   if (nature_.browser && !coordinator_.scheduler().is_browser(band.instance)) {
-    reply(PutOutcome::kTryAgain);  // SchedulerThread::put_band refuses the band in this case, too
+    // The real coordinator also refuses the band of a tab of which it has not received Hello.
+    reply(PutOutcome::kTryAgain);
   } else {
     coordinator_.put_band(band, reply);
   }

@@ -1,7 +1,8 @@
 #pragma once
 
 // A simulated worker in virtual time. Tests kill, freeze and disconnect it; its results are lost,
-// delayed and repeated; its coordinator restarts.
+// delayed and repeated; its coordinator restarts. A lease gives a band (a range of rows and
+// samples) to the worker.
 
 #include <deque>
 #include <memory>
@@ -64,10 +65,10 @@ class SimWorker {
     SessionId id = 0;
     std::uint64_t epoch_number = 0;
     bool open = true;
-    /// Time at which the last message from the coordinator arrives. No later message arrives before
-    /// it.
+    /// Time at which the newest message from the coordinator arrives. A message that is sent later
+    /// does not arrive earlier.
     double down_at = 0;
-    double up_at = 0;  ///< time at which the last message to the coordinator arrives
+    double up_at = 0;  ///< time at which the newest message to the coordinator arrives
   };
   /// A lease, which the worker holds until the result is acknowledged.
   struct Held {
@@ -92,9 +93,13 @@ class SimWorker {
   void down(const std::shared_ptr<Stream>& stream, const Action& action);
   /// Sends an input to the coordinator.
   void up(const Input& input);
+  /// Carries out an action of the coordinator.
   void receive(const Action& action);
+  /// Takes a new lease, or notes that the coordinator has confirmed a lease after a reconnect.
   void take(const action::Lease& lease);
+  /// Ends a lease. If its band is being rendered, the next band is begun instead.
   void drop(LeaseId id);
+  /// Begins the first band that is not finished, unless a band is being rendered.
   void render();
   /// Returns true if the lease has the row at which the process crashes (Nature).
   bool has_deadly_row(const action::Lease& lease) const;

@@ -43,7 +43,7 @@ class SimulatedFarm {
     keep_sending([this, job] { coordinator_.input(input::Submit{job}); });
   }
 
-  /// Runs the farm until `jobs` jobs are final and `calm_s` seconds have passed since the storm.
+  /// Runs the farm until `jobs` jobs are final and the storm ended more than `calm_s` seconds ago.
   /// The run ends early at the time `end`, in seconds, or as soon as something is wrong.
   void run_until_over(std::size_t jobs, double calm_s, double end) {
     while (agenda_.now() < end && !coordinator_.broken) {

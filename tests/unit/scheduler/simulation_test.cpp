@@ -309,6 +309,8 @@ class Simulation : SimulatedFarm {
         out.broken = hole;
         return out;
       }
+      // A job may fail only if the weather has failing bands or a deadly row. Lost workers may fail
+      // only job 1, and only if it has a deadly row.
       const bool explained =
           job.state == JobState::kDone || job.state == JobState::kCancelled ||
           ((weather_.failures || weather_.deadly_row) && job.state == JobState::kFailed);
@@ -329,6 +331,7 @@ class Simulation : SimulatedFarm {
   std::uint64_t crashes_ = 0;
 };
 
+/// Returns one to three jobs with random sizes and stop rules.
 std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   Chance chance(seed ^ 0xABCDEF);
   std::vector<JobSpec> jobs;
@@ -366,6 +369,7 @@ TEST(Simulation, EveryJobEndsUnderRandomFailures) {
   RecordProperty("rendered", static_cast<int>(all.rendered));
 }
 
+/// Returns one or two sequences (jobs of many frames) with 1 to 25 frames each.
 std::vector<SequenceSpec> random_sequences(std::uint64_t seed) {
   Chance chance(seed ^ 0xFEDCBA);
   std::vector<SequenceSpec> sequences;
@@ -497,8 +501,9 @@ Outcome run_storm(std::uint64_t seed) {
       .run(job_with_error_target(seed));
 }
 
-// At these seeds, several workers that hold the same sound band are lost by chance. A scheduler
-// that blames a band after three lost workers, or after four on a new farm, fails the job here.
+// At these seeds, several workers that hold the same sound band are lost by chance. The job must
+// not fail for this. It would fail if the scheduler blamed a band after three lost workers, or
+// after four on a farm that has stored few bands yet.
 TEST(Simulation, AHealthyJobEndsAtSeedsWithManyLostWorkers) {
   EXPECT_EQ(run_with_liars(69'113, 2).broken, "");
   EXPECT_EQ(run_storm(20'771).broken, "");

@@ -1,7 +1,8 @@
 // Simulates forty browser tabs beside a few native workers, in one thread and virtual time. Tabs
-// join, are frozen, closed, loaded again and disconnected; they reconnect with the leases that they
-// hold, fail bands and return wrong pixels ("lie"), while the coordinator crashes. All this happens
-// in the first kStorm seconds; after that every job must be done. A failure prints its seed;
+// join, are frozen, closed, loaded again and disconnected; they reconnect with the leases (bands
+// given to them) that they hold, fail bands and return wrong pixels ("lie"), while the coordinator
+// crashes. All this happens in the first kStorm seconds; after that every job must be done. A
+// worker that lied is quarantined: it gets no more work. A failure prints its seed;
 // BANDSAW_SEED=n in the environment repeats this run, and BANDSAW_SEEDS=n runs n seeds.
 
 #include <cmath>
@@ -26,8 +27,8 @@ struct TabOutcome {
 /// The farm and the events that may happen in a run.
 struct TabWeather {
   bool liars = false;  ///< a third of the tabs lie, and all bands of tabs are audited
-  Browsers browsers = Browsers::kAlso;
-  std::size_t natives = 3;  ///< number of native workers
+  Browsers browsers = Browsers::kAlso;  ///< tabs and native workers render
+  std::size_t natives = 3;              ///< number of native workers
 };
 
 class TabSimulation : SimulatedFarm {

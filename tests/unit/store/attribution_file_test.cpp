@@ -32,6 +32,9 @@ TEST_F(AttributionFileTest, AMissingFileIsNotFound) {
   EXPECT_TRUE(absl::IsNotFound(read_attribution(path_).status()));
 }
 
+// The texts are, in order: an empty file, a file without its second piece, a piece without rows,
+// two pieces that overlap, a row beyond the largest image, a field after the last piece, and too
+// many pieces.
 TEST_F(AttributionFileTest, TheErrorNamesADamagedFile) {
   for (const char* text :
        {"", "pieces 2\nfirst 0\nlast 7\nworker a\n", "pieces 1\nfirst 7\nlast 7\nworker a\n",

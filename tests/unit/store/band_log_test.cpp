@@ -28,7 +28,8 @@ BandRecord sample_band(std::uint32_t row, std::uint32_t width = 4) {
 
 class BandLogTest : public testing::Test {
  protected:
-  /// Opens the log, and keeps the rows and offsets of the records that it reads, and its report.
+  /// Opens the log. Keeps the report of the opening and, for each record that is read, the row and
+  /// the offset.
   absl::StatusOr<BandLog> open() {
     rows_.clear();
     offsets_.clear();

@@ -1,4 +1,5 @@
-// The blobs on the coordinator's disk: uploads, interrupted uploads, damage, and a full disk.
+// Tests the store of blobs (parts of scenes, named by their SHA-256 digests) on the coordinator's
+// disk: uploads, interrupted uploads, damage, and a full disk.
 
 #include "coordinator/store/blob_store.h"
 
@@ -53,9 +54,11 @@ class BlobStoreTest : public testing::Test {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
+  /// Returns the path of a blob's file.
   std::string file_of(const wire::Digest& digest) const {
     return folder_ / (digest.hex().substr(0, 2) + "/" + digest.hex());
   }
+  /// Returns the number of files in the store.
   std::size_t files() const {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
@@ -208,7 +211,7 @@ TEST_F(BlobStoreTest, ADamagedFileIsDataLossAndCanBeSentAgain) {
   write_all(file_of(digest), "some geometrY");
   const auto store = open();
   EXPECT_EQ(store->get(digest).status().code(), absl::StatusCode::kDataLoss);
-  EXPECT_FALSE(store->has(digest)) << "it must be missing, so that its sender is asked for it";
+  EXPECT_FALSE(store->has(digest)) << "a damaged blob must count as missing";
   ASSERT_TRUE(put(*store, text).ok());
   EXPECT_EQ(text_of(*store, digest), text);
 }

@@ -76,14 +76,14 @@ TEST(Reserve, IsHeldReleasedAndHeldAgain) {
   EXPECT_TRUE(reserve.release());
   EXPECT_FALSE(file_exists(temp / "reserve"));
   {
-    const test::FullDisk full(1000);
+    const test::FullDisk full(1000);  // no file can grow beyond 1000 bytes
     EXPECT_EQ(reserve.hold().code(), absl::StatusCode::kResourceExhausted);
     EXPECT_FALSE(file_exists(temp / "reserve"));
   }
   EXPECT_TRUE(reserve.hold().ok());
 }
 
-// The probe writes a file, to find out if the disk has space, and removes it.
+// To find out if the disk has space, the probe writes a file, and then removes the file.
 TEST(DataFolder, TheProbeFailsWhileTheDiskIsFull) {
   const test::TempDir temp;
   EXPECT_TRUE(probe_disk(temp.path()).ok());

@@ -75,7 +75,7 @@ TEST(RecordText, RecordsWithoutTheNewestFieldsAreRead) {
       EXPECT_EQ(summary->counters.techniques, 0u);
     }
   }
-  EXPECT_GT(fields, 5) << "the sample records must have such fields";
+  EXPECT_GT(fields, 5) << "several sample records must have had fields that were removed";
 }
 
 TEST(RecordText, NamesOfOlderVersionsAreRead) {

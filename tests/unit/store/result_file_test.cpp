@@ -36,6 +36,7 @@ TEST_F(ResultFileTest, ReadsBackTheSamePixels) {
   EXPECT_EQ(result->image.width, 3u);
   EXPECT_EQ(result->image.height, 2u);
   EXPECT_EQ(result->image.pixels, image.pixels);
+  // The image has 6 pixels of 12 bytes.
   const std::string bytes(reinterpret_cast<const char*>(image.pixels.data()), 6 * 12);
   EXPECT_EQ(result->digest, wire::sha256(bytes));
 }

@@ -10,6 +10,7 @@
 
 namespace bandsaw::coordinator {
 
+/// Returns a job with this stop rule. Its name contains zero bytes, so the length, 39, is given.
 inline JobSpec sample_spec(StopRule stop) {
   return {.request_id = "0123456789abcdef",
           .name = std::string("a \"name\"\n with\ttabs, \xc3\xa4 and a \0 inside", 39),
@@ -19,6 +20,7 @@ inline JobSpec sample_spec(StopRule stop) {
           .package_bytes = 12'345};
 }
 
+/// Returns a sequence, which is a job of many frames.
 inline SequenceSpec sample_sequence() {
   const JobSpec job = sample_spec(StopAtError{.relative_rmse = 0.1, .max_samples = 9});
   return {.request_id = job.request_id,

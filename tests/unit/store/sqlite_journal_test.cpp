@@ -118,8 +118,9 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
   }
 }
 
-// Journals up to version 8 have no sequences. They can be read, and appending a sequence raises
-// their version. The last three sample records are those of a sequence.
+// A sequence is a job of many frames. Journals up to version 8 have no sequences. They can be read,
+// and appending a sequence raises their version. The last three sample records belong to a
+// sequence.
 TEST_F(SqliteJournalTest, ASequenceCanBeAppendedToAJournalOfVersion8) {
   std::vector<Record> records = sample_records();
   std::vector<Record> old(records.begin(), records.end() - 3);

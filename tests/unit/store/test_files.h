@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads and writes whole files as strings, for tests that damage them.
+// Reads and writes whole files as strings, for tests that damage files.
 
 #include <fstream>
 #include <sstream>
@@ -20,6 +20,7 @@ inline void write_all(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
 }
 
+/// Returns the bytes of `text`, which MUST outlive the result.
 inline absl::Span<const std::byte> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
 }
