@@ -1,5 +1,5 @@
-// A test gives environment variables to a child process as entries "NAME=value". The child process
-// inherits all other variables from the test.
+// Tests the environment of child processes. A test gives variables to a child process as entries
+// "NAME=value". The child process inherits all other variables from the test.
 
 #include "tests/support/process.h"
 

@@ -121,7 +121,7 @@ TEST(Noise, HasMeanZeroAndTheVarianceOfUnitGradients) {
 TEST(Noise, IsSmoothAcrossCells) {
   // Gradients have unit length, and the slope of Hermite weights is at most 3/2. So the slope along
   // x is at most 1 + 1.5 * 2 * sqrt(3) < 6.2. The two points are two steps apart, so their values
-  // differ by less than 12.4 steps.
+  // differ by less than 12.4 steps. The test permits 20 steps.
   std::mt19937_64 numbers(3);
   std::uniform_real_distribution<double> where(-10, 10);
   constexpr double kStep = 1e-4;
@@ -198,6 +198,7 @@ TEST(Ramp, AppliesToATextureAndToEachCoordinate) {
   RampTexture ramp;
   ramp.texture = id(0);
   ramp.stops = {{0, {0, 0, 0}}, {10, {10, 10, 10}}};
+  // A ramp over a texture uses the texture's luminance, which is 0.7152 for green.
   EXPECT_NEAR(at_uv({ConstantTexture{{0, 1, 0}}, ramp}, 0, 0).r, 0.7152, 1e-6);
   const TextureCoordinates at{.uv = {1, 2}, .uv2 = {8, 9}, .position = {3, 4, 5}};
   using Over = RampTexture::Over;
@@ -367,6 +368,8 @@ TEST(CheckParts, RefusesCyclesAndInvalidNumbers) {
             "ramp.stop[1].at: must be above 1, the position of the stop before; it is 1");
 }
 
+// Each product has the texture before it as both factors. So a look-up of texture n evaluates
+// 2^(n + 1) - 1 textures.
 TEST(CheckParts, RefusesALookUpThatTakesTooLong) {
   Textures textures{ConstantTexture{}};
   for (std::uint32_t i = 0; i < 7; ++i) {

@@ -189,8 +189,8 @@ TEST(Texture, TX7HasNoSeamOnASphere) {
   // The image has 64 x 32 texels. Its first and last columns are equal, and its values grow from
   // the top row to the bottom row, that is, from pole to pole. Points on either side of the seam
   // that are close together must differ by less than two texel steps (the step from row to row is
-  // 4/255). For a point close to a pole, the outermost row has one texel in the direction of the
-  // point. The value must be within two texel steps of this texel.
+  // 4/255). At a point close to a pole, the value must be within two texel steps of one texel of
+  // the outermost row: the texel that lies in the direction of the point.
   ImageTexture image;
   image.width = 64;
   image.height = 32;

@@ -136,8 +136,8 @@ TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
-// The upload was admitted by a login with the old secret. The new secret of the users ends the
-// upload without a response.
+// An upload begins after a login with the old secret of the users. When this secret is replaced,
+// the server closes the upload's connection without a response.
 TEST_F(AccessTest, ANewSecretClosesConnections) {
   log_in();
   const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

@@ -37,14 +37,14 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   const std::uint64_t job = submit_box();
   EXPECT_EQ(state(job).state(), "none");
   EXPECT_EQ(post(path(job))->status, 409);  // not finished
-  finish(job, 24, 16);
+  finish(job, /*width=*/24, /*height=*/16);
   EXPECT_EQ(get(path(job, ".png"))->status, 409);  // the picture was not requested
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // starts no more jobs
   EXPECT_EQ(state(job).state(), "guides");
-  finish(job + 1, 24, 16, 16);
+  finish(job + 1, 24, 16, /*samples=*/16);
   EXPECT_EQ(state(job).fraction(), 0.5);
-  finish(job + 2, 24, 16, 16);
+  finish(job + 2, 24, 16, /*samples=*/16);
   const web::CleanPicture ready = wait_until_filtered(job);
   EXPECT_EQ(ready.state(), "ready") << ready.reason();
   EXPECT_EQ(ready.relative_rmse_raw(), 0);  // all samples are equal
@@ -70,8 +70,8 @@ TEST_F(CleanPicturesTest, SayWhyTheyFailedAndAreTriedAgain) {
   EXPECT_EQ(failed.state(), "failed");
   EXPECT_THAT(failed.reason(), HasSubstr("cancelled"));
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
-  finish(job + 1, 24, 16, 16);
-  finish(job + 3, 24, 16, 16);  // replaces the cancelled guide
+  finish(job + 1, 24, 16, /*samples=*/16);
+  finish(job + 3, 24, 16, /*samples=*/16);  // replaces the cancelled guide
   EXPECT_EQ(wait_until_filtered(job).state(), "ready");
 }
 

@@ -84,14 +84,14 @@ TEST_F(ExchangeTest, AGetIsAnsweredAndTheConnectionEnds) {
   EXPECT_THAT(all, StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(all, HasSubstr("\r\nConnection: close\r\n"));
   EXPECT_THAT(all, HasSubstr("\r\nContent-Type: text/plain\r\n"));
-  EXPECT_THAT(all, HasSubstr("\r\nContent-Length: 9\r\n"));
+  EXPECT_THAT(all, HasSubstr("\r\nContent-Length: 9\r\n"));  // of "GET /a b "
   EXPECT_THAT(all, HasSubstr("\r\nX-Every: answer\r\n"));
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\nGET /a b "));
 }
 
 TEST_F(ExchangeTest, TheResponseToHeadHasNoBody) {
   const std::string all = answer("HEAD / HTTP/1.1\r\nHost: a\r\n\r\n");
-  EXPECT_THAT(all, HasSubstr("\r\nContent-Length: 7\r\n"));
+  EXPECT_THAT(all, HasSubstr("\r\nContent-Length: 7\r\n"));  // of "HEAD / ", which is not sent
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\n"));
 }
 

@@ -74,6 +74,8 @@ TEST(HttpRange, ARangeBeyondTheEndIsRefused) {
   }
 }
 
+// The server ignores a malformed range, several ranges, a range of an error message, and a range
+// with the condition If-Range.
 TEST(HttpRange, AnUnsupportedRangeReturnsEverything) {
   for (const std::string range :
        {"", "bytes", "bytes=", "bytes=-", "bytes=5-2", "bytes=a-b", "bytes=1-2,4-5", "rows=1-2",
@@ -91,8 +93,8 @@ TEST(HttpRange, AnUnsupportedRangeReturnsEverything) {
   EXPECT_EQ(with_range(conditional, text_reply("0123456789", "text")).status, 200);
 }
 
-// "*" in a route stands for one or more characters other than "/", which the handler gets as
-// `captured`.
+// "*" in a route stands for one or more characters other than "/". The handler gets these
+// characters as `captured`.
 TEST(HttpRouter, ARouteMatchesAMethodAndAWholePath) {
   Router router;
   router.get("/", [](const HttpRequest&) { return text_reply("page", "text"); });

@@ -149,6 +149,7 @@ TEST_F(RoutesTest, MissingThingsAre404) {
   EXPECT_EQ(get("/api/workers/log?name=desk")->status, 404);
   submit_box();
   EXPECT_EQ(get("/api/jobs/1/preview.png")->status, 404);
+  // The job exists, but it is not done.
   EXPECT_EQ(get("/api/jobs/1/image.png")->status, 409);
   EXPECT_EQ(get("/api/jobs/1/report.json")->status, 409);
   EXPECT_EQ(get("/api/jobs/7/report.json")->status, 404);

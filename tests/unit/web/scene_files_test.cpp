@@ -91,7 +91,8 @@ TEST_F(SceneFilesTest, TheThirdSceneAtATimeIsRefusedWith503) {
   EXPECT_EQ(refused, 503);
 }
 
-// A client cannot parse a list of jobs with a name that is not UTF-8.
+// A name of a job has at most 200 bytes. A client cannot parse a list of jobs with a name that is
+// not UTF-8.
 TEST_F(SceneFilesTest, ATitleIsCleanedAndCutBetweenCharacters) {
   const std::string box = "a box";
   ASSERT_EQ(post("/api/files", sent(box))->status, 200);
@@ -196,6 +197,7 @@ TEST_F(SceneFilesTest, ALayerIsAJobOfTheSameScene) {
   EXPECT_EQ(post("/api/jobs/99/layer?kind=depth")->status, 404);
 }
 
+// The name and " (normals)" together have at most 200 bytes.
 TEST_F(SceneFilesTest, ALayerOfAJobWithALongNameHasAShorterName) {
   const std::string title(200, 'x');
   post("/api/scenes?name=box.textproto&title=" + title, "a box");

@@ -1,4 +1,4 @@
-// A coordinator with its dashboard, and a browser's requests for tests.
+// Starts a coordinator with a dashboard for tests, and sends the requests of a browser.
 
 #include "tests/unit/web/web_farm.h"
 

@@ -18,7 +18,7 @@
 
 namespace bandsaw::coordinator {
 
-/// The architecture other than this program's.
+/// One of the two architectures that workers have: the one that this program does not have.
 inline constexpr Machine kOtherMachine =
     kThisMachine == Machine::kX86_64 ? Machine::kAarch64 : Machine::kX86_64;
 
@@ -46,7 +46,8 @@ class WebTest : public ::testing::Test {
   /// MUST be multiples of 8. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
               std::uint64_t samples = 64, std::uint64_t first = 0);
-  /// Parses the body as a message; fails the test if it is not one.
+  /// Parses the body of an answer, the JSON of a message. Fails the test if the body is no such
+  /// JSON.
   template <class Message>
   Message message(const Answer& result) {
     Message out;

@@ -1,4 +1,5 @@
-// The blobs on a worker's disk, which several workers of one machine share.
+// Tests the cache of blobs (parts of scenes, named by their SHA-256 digests) on a worker's disk.
+// Several workers of one machine may share the cache.
 
 #include "worker/cache/blob_cache.h"
 
@@ -16,6 +17,7 @@
 namespace bandsaw::worker {
 namespace {
 
+/// Returns the content of a blob: `size` bytes with the value `fill`.
 std::vector<std::byte> bytes_of(char fill, std::size_t size = 1000) {
   return std::vector<std::byte>(size, static_cast<std::byte>(fill));
 }

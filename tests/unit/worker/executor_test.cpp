@@ -16,6 +16,8 @@ namespace {
 
 const RenderSettings kSettings{.width = 24, .height = 24, .max_depth = 3, .seed = 1};
 
+/// Returns the task `id`: 16 samples of `rows` rows from `first_row` on. The manifest of the scene
+/// is the one letter `scene`.
 Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = 'a') {
   return {.id = id,
           .job = 1,
@@ -104,10 +106,10 @@ class ExecutorTest : public ::testing::Test {
   bool gate_closed_ = false;  ///< while it is true, loading a scene does not end
   absl::Status load_error_;   ///< error that load() returns; OK: none
   bool load_needs_too_much_memory_ = false;
-  double loaded_cpu_s_ = 0;  ///< cpu_s() when the last scene was loaded
-  std::vector<wire::Digest> loads_;
-  std::vector<TaskId> prepared_;
-  std::vector<TaskId> order_;
+  double loaded_cpu_s_ = 0;          ///< cpu_s() when the last scene was loaded
+  std::vector<wire::Digest> loads_;  ///< manifests of the scenes, in the order of their loading
+  std::vector<TaskId> prepared_;     ///< tasks for which loading was reported
+  std::vector<TaskId> order_;        ///< tasks in the order in which they were finished
   std::map<TaskId, FinishedBand> finished_;
   std::map<TaskId, absl::Status> failed_;
   std::unique_ptr<Executor> executor_;
@@ -144,6 +146,7 @@ TEST_F(ExecutorTest, CountsTheCpuTimeOfRenderingOnly) {
   EXPECT_LE(finished_.at(1).cost.cpu_s, cpu_s() - loaded_cpu_s_);
 }
 
+// The third scene, c, replaces b, because a was used later than b. So b is loaded twice.
 TEST_F(ExecutorTest, KeepsTheLastTwoScenes) {
   start();
   const char scenes[] = {'a', 'b', 'a', 'c', 'a', 'b'};

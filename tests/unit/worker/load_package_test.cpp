@@ -14,8 +14,8 @@
 namespace bandsaw::worker {
 namespace {
 
-/// A coordinator with one package, which counts the bytes that it sends and interrupts a given
-/// number of transfers.
+/// A coordinator with one package. It counts the bytes that it sends, and interrupts the next
+/// `breaks_` transfers.
 class LoadPackageTest : public ::testing::Test {
  protected:
   LoadPackageTest() {

@@ -1,10 +1,10 @@
 // LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 lines
-// wait. take() removes lines from the queue, to send them. arrived() says that the coordinator has
-// received all lines that were taken. again() is called when the worker has connected again. It
-// inserts taken lines into the queue again, because the coordinator may lack them. If the
-// coordinator has not restarted, it may lack the lines taken since the last call of arrived(). If
-// the coordinator has restarted, it may lack all lines. At most the last 50 taken lines are
-// inserted again.
+// wait. Lines that are lost are replaced by one line with their number. take() removes lines from
+// the queue, to send them. arrived() says that the coordinator has received all lines that were
+// taken. again() is called when the worker has connected again. It inserts taken lines into the
+// queue again, because the coordinator may lack them. If the coordinator has not restarted, it may
+// lack the lines taken since the last call of arrived(). If the coordinator has restarted, it may
+// lack all lines. At most the last 50 taken lines are inserted again.
 
 #include "worker/log_queue.h"
 

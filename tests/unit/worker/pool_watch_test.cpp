@@ -1,4 +1,5 @@
-// PoolWatch reports the progress of a pool while another thread waits for it.
+// PoolWatch reports the progress of a pool of threads while another thread waits for the pool. A
+// range is all the calls of one parallel_for().
 
 #include "worker/executor/pool_watch.h"
 

@@ -1,5 +1,6 @@
 // A worker's side of its session with the coordinator, as a pure state machine: leases, heartbeats,
-// reconnection, draining.
+// reconnection, and draining (the worker finishes its bands and takes no more). An epoch, such as
+// "e1", is one run of the coordinator.
 
 #include "worker/session/session.h"
 
@@ -210,6 +211,7 @@ TEST(Session, KeepsAHeldBandUnderItsNewLease) {
   EXPECT_EQ(session.heartbeat().heartbeat().lease(0).lease(), 3U);
 }
 
+// Lease ids are unique only within an epoch. So the worker holds two leases with the id 10.
 TEST(Session, ARevokeAppliesToThePresentEpochFirst) {
   Session session(worker_info());
   session.receive(welcome("e1"));

@@ -128,7 +128,7 @@ TEST_F(UploaderTest, DropsUnwantedBands) {
   uploader_->add(band(1));
   uploader_->add(band(2));
   wait_for_attempts(1, 1);
-  uploader_->drop(1);
+  uploader_->drop(1);  // as when the lease of the band is revoked
   wait_for_settled(1);
   EXPECT_EQ(settled_[0].first, 2U);
 }
