@@ -40,6 +40,7 @@ bandsaw::Pool& pool() {
   return only;
 }
 
+/// Builds the scene of a manifest from the blobs that were added, and forgets these blobs.
 absl::Status build(const std::string& manifest) {
   const auto blobs = std::exchange(state().blobs, std::make_unique<bandsaw::BlobMap>());
   auto description = bandsaw::decode_package(manifest, *blobs);
@@ -82,7 +83,8 @@ const double* bandsaw_render(uint32_t width, uint32_t height, uint32_t max_depth
                                       .max_depth = max_depth,
                                       .seed = seed,
                                       .integrator = static_cast<bandsaw::Integrator>(integrator)},
-                                     {{0, samples}, {0, height}}, pool(), stop, {});
+                                     {/*samples=*/{0, samples}, /*rows=*/{0, height}}, pool(), stop,
+                                     /*progress=*/{});
   state().error = std::string(pixels.status().message());
   if (!pixels.ok()) {
     return nullptr;

@@ -2,7 +2,7 @@
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 
-/** The functions of WASI that the module may call: there are no files, no arguments and no environment. */
+/** Returns the functions of WASI for a module without files, arguments and environment. All except the two below fail. */
 function wasi(memory) {
   const refused = 52;  // ENOSYS
   return new Proxy({
@@ -22,7 +22,7 @@ function wasi(memory) {
   }, {get: (known, name) => known[name] ?? (() => refused)});
 }
 
-/** Loads a module. Its imports are functions of WASI; each gets an implementation. */
+/** Loads a module, with an implementation for each function of WASI that the module imports, and returns its Renderer. */
 export async function load(file) {
   const module = await WebAssembly.compile(readFileSync(file));
   let instance;

@@ -4,6 +4,7 @@ import {mkdirSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 
+/** Calls `body` with a new folder, and then removes the folder. */
 export async function inTemporaryFolder(body) {
   const folder = mkdtempSync(join(tmpdir(), 'bandsaw-wasm-'));
   try {
@@ -13,10 +14,11 @@ export async function inTemporaryFolder(body) {
   }
 }
 
-/** Writes the scene's package to a folder in `folder`, and returns its name. */
+/** Writes the scene's package to a new folder in `folder`, and returns the path of the new folder. */
 export function importScene(bin, scene, folder) {
   const parts = join(folder, 'package');
   mkdirSync(parts);
+  // The last two arguments limit the import: 600 s of CPU time and 4 GB of memory.
   execFileSync(join(bin, 'bandsaw-import'), ['scene', scene, parts, '600', '4000000000'], {stdio: ['ignore', 'ignore', 'inherit']});
   return parts;
 }

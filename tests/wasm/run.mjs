@@ -3,8 +3,9 @@
 //   bits     The module must compute the same two hashes as the program NATIVE: the canary (the hash of a small image) and the
 //            hash of the results of many fused multiply-adds, which WebAssembly emulates.
 //   gallery  Every scene of the folder GALLERY is rendered 48 pixels wide. The sums of its pixels must have the bits of
-//            BIN/bandsaw render. For the thirteen scenes that the file SAME_BITS lists, the hash of the sums must also be the one there.
-// Exit status: 0 equal, 1 not, 77 the module or node's WebAssembly is missing.
+//            BIN/bandsaw render. The file SAME_BITS lists thirteen scenes, each with a hash. The sums of these scenes must have
+//            the listed hashes.
+// Exit status: 0 all is equal, 1 something differs, 77 the file of the module is missing.
 import {execFileSync} from 'node:child_process';
 import {existsSync, readFileSync, readdirSync} from 'node:fs';
 import {basename, join} from 'node:path';
@@ -23,9 +24,10 @@ function check(what, found, wanted) {
   console.log(`${equal ? 'ok   ' : 'WRONG'} ${what}${equal ? '' : `: ${found}, native ${wanted}`}`);
 }
 
+/** Compares the bytes of two arrays of doubles; returns 'equal' or the place of the first difference. */
 function firstDifference(a, b) {
   const at = a.findIndex((byte, i) => byte !== b[i]);
-  return a.length !== b.length ? `${a.length} bytes` : at < 0 ? 'equal' : `differs from number ${at >> 3}`;
+  return a.length !== b.length ? `${a.length} bytes` : at < 0 ? 'equal' : `the first different sum is number ${at >> 3}`;
 }
 
 async function checkBits() {
@@ -57,7 +59,7 @@ async function checkGallery() {
   for (const name of scenes) {
     await inTemporaryFolder((folder) => checkScene(join(gallery, name), folder, hashes));
   }
-  check('scenes of the thirteen hashes that were not found', [...hashes.keys()].join(' '), '');
+  check(`scenes of ${basename(sameBits)} that the gallery lacks`, [...hashes.keys()].join(' '), '');
 }
 
 await (part === 'bits' ? checkBits() : checkGallery());

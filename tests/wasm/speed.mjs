@@ -1,4 +1,5 @@
 // Compares the speed of the renderer as WebAssembly in node with that of one native core, for the same image. Run by hand.
+// Prints for each scene the CPU seconds of both, and the ratio of the native seconds to those of WebAssembly.
 // Usage: node speed.mjs MODULE.wasm BIN SCENE.textproto…
 import {basename} from 'node:path';
 import {importScene, inTemporaryFolder, renderNatively} from './native.mjs';

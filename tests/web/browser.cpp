@@ -93,7 +93,8 @@ Browser::~Browser() { http_call(port_, {.method = "DELETE", .target = session_})
 
 Value Browser::post(const std::string& path, const Struct& body) {
   std::string json;
-  BANDSAW_CHECK(google::protobuf::util::MessageToJsonString(body, &json).ok(), "it is an object");
+  BANDSAW_CHECK(google::protobuf::util::MessageToJsonString(body, &json).ok(),
+                "the command cannot be written as JSON");
   const auto result = http_call(port_, {.method = "POST",
                                         .target = path,
                                         .headers = {{"Content-Type", "application/json"}},

@@ -49,7 +49,7 @@ class Browser {
   void block(const std::string& pattern);
   /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);
-  /// Returns the process from which all others of this browser descend.
+  /// Returns the process of chromedriver. All processes of this browser descend from it.
   pid_t pid() const { return driver_.pid(); }
   /// Returns the errors on the browser's console since the last call.
   std::vector<std::string> console_errors();

@@ -154,6 +154,7 @@ TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   ASSERT_TRUE(browser.wait("location.hash === '#/jobs/1'"));
   ASSERT_TRUE(browser.wait(kPictured));
   const std::string first = browser.text(kPreview);
+  // `done`: the percentage of the job that is done, as the page shows it.
   const std::string done = browser.text("document.querySelector('.big strong').textContent");
   EXPECT_TRUE(browser.wait(std::string(kPreview) + " !== '" + first + "'"));
   EXPECT_TRUE(browser.wait("document.querySelector('.big strong').textContent !== '" + done + "'"));
@@ -282,7 +283,9 @@ TEST_F(DashboardTest, APictureThatWasNotLoadedIsRequestedAgain) {
       "window.failed = {};"
       "document.addEventListener('error', ({target}) => { window.failed[target.src] = true; },"
       "  true);");
-  // Waits until a picture whose address contains `part` has failed, then lets requests pass.
+  // Waits until a picture whose address contains `part` has failed, then lets requests pass. The
+  // parts below: "at=end" is in the address of the picture of a finished job, "clean.png" of its
+  // denoised picture, and "side=256" of its small picture in the list of jobs.
   const auto fails = [&](const std::string& part) {
     EXPECT_TRUE(
         browser.wait("Object.keys(window.failed).some((one) => one.includes('" + part + "'))"));

@@ -119,7 +119,8 @@ Value Firefox::call(const std::string& command, const Struct& parameters) {
   message.mutable_list_value()->add_values()->set_string_value(command);
   *message.mutable_list_value()->add_values()->mutable_struct_value() = parameters;
   std::string json;
-  BANDSAW_CHECK(google::protobuf::util::MessageToJsonString(message, &json).ok(), "it is a list");
+  BANDSAW_CHECK(google::protobuf::util::MessageToJsonString(message, &json).ok(),
+                "the command cannot be written as JSON");
   socket_->send(json);
   const std::string text = socket_->receive();
   ListValue answer;

@@ -36,7 +36,7 @@ class Firefox {
   std::string text(const std::string& expression);
   /// Waits in the page until the expression is true. Returns false after 170 seconds.
   bool wait(const std::string& expression);
-  /// Returns the process from which all others of this Firefox descend.
+  /// Returns the first process of this Firefox. Its other processes descend from the first.
   pid_t pid() const { return firefox_->pid(); }
 
  private:

@@ -1,5 +1,6 @@
 // Browsers as workers of a farm. Users who open the link for browsers render in a tab, with the
-// renderer as WebAssembly. A job has the same bytes as a local render, whatever the tabs do.
+// renderer as WebAssembly. The image of a job has the same bytes as that of a local render,
+// whatever the tabs do.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
