@@ -31,8 +31,8 @@ class BandPipeline {
   BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
                const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
 
-  /// Renders the band and then sends its pixels. Bands are rendered in the order of the calls (see
-  /// Executor).
+  /// Renders the band and then sends its pixels. Bands are begun in the order of the calls, at most
+  /// two at a time.
   void start(const Task& task) { executor_.add(task); }
   /// Cancels the rendering of a band whose lease was revoked, or drops its pixels.
   void stop(TaskId task);

@@ -91,6 +91,7 @@ struct Arguments {
   bool quiet = false;
 };
 
+/// Adds the options to `app`, which writes their values to `arguments`.
 void describe(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "bandsaw-worker " BANDSAW_VERSION);
   app.add_option("--join", arguments.join,
@@ -113,6 +114,7 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "Log warnings and errors only");
 }
 
+/// Prints the error and returns the exit code `code`.
 int fail(int code, const absl::Status& status) {
   std::fprintf(stderr, "bandsaw-worker: %s\n", std::string(status.message()).c_str());
   return code;
@@ -124,6 +126,7 @@ struct Log {
   std::shared_ptr<LogQueue> news;                           ///< sent to the coordinator
 };
 
+/// Makes the log of this process. Standard error gets only warnings and errors if `quiet` is true.
 Log start_log(bool quiet) {
   Log log{std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(wire::kLogLines),
           std::make_shared<LogQueue>()};
@@ -215,7 +218,8 @@ int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
                 absl::InvalidArgumentError(absl::StrCat("--kernel: ", kernel.status().message())));
   }
   const sigset_t set = watched_signals();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it
+  // There is no other thread yet, so all later threads inherit the mask.
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
   const Log log = start_log(arguments.quiet);
   DaemonOptions options{.join = *std::move(join),
                         .info = {.instance = link::random_hex(16),

@@ -65,7 +65,10 @@ class Daemon::Impl {
   /// into the queue. Any other message, except Refused, means that the lines sent so far have
   /// arrived.
   void note_log(const farm::ToWorker& message);
+  /// Passes a message of the coordinator at `address` to the session, and takes the actions that
+  /// the session returns.
   void handle(const farm::ToWorker& message, const std::string& address);
+  /// Logs why the connection was lost. An outage is logged once, not for each failed try.
   void log_loss(const absl::Status& status);
 
   const DaemonOptions options_;
@@ -164,7 +167,8 @@ void Daemon::Impl::note_log(const farm::ToWorker& message) {
 }
 
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {
-  note_log(message);  // first: after a Welcome, receive() lets write_all() send lines
+  // note_log() must come first, because receive() of a Welcome lets write_all() send lines.
+  note_log(message);
   const SessionEffects effects = session_.receive(message);
   if (message.has_welcome()) {
     backoff_.reset();
@@ -194,7 +198,7 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
 
 void Daemon::Impl::log_loss(const absl::Status& status) {
   const std::string why = status.ok() ? "the stream ended" : std::string(status.message());
-  if (why != last_loss_) {  // one line for an outage, not one for each try
+  if (why != last_loss_) {
     spdlog::warn("{}; trying again until the coordinator answers", why);
     last_loss_ = why;
   }

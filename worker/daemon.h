@@ -21,9 +21,8 @@ namespace bandsaw::worker {
 
 class LogQueue;  // worker/log_queue.h
 
-/// A function that returns an implementation of the calls, which is used instead of `calls`.
-/// `calls` outlives this implementation. A test uses such a function to make a worker that returns
-/// wrong pixels.
+/// Returns an object whose functions the worker calls instead of those of `calls`. `calls` outlives
+/// the object. A test uses this to make a worker that returns wrong pixels.
 using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
 
 struct DaemonOptions {

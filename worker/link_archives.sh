@@ -13,7 +13,7 @@ done
 for argument; do
   shift
   case $argument in
-    -lc | -lm | -ldl | -lrt | -lpthread) name= ;;  # glibc's own
+    -lc | -lm | -ldl | -lrt | -lpthread) name= ;;  # glibc's own libraries stay shared
     -l[!:]*) name=${argument#-l} ;;
     /*/lib*.so | /*/lib*.so.*) name=${argument##*/lib} name=${name%%.so*} ;;
     *) name= ;;

@@ -10,9 +10,9 @@
 
 namespace bandsaw::worker {
 
-/// Holds the answer to the last call of a function of exports.h for an object. The page's
-/// JavaScript reads the answer from the memory of the WebAssembly module after the call. Every
-/// function returns a pointer to this one answer, which the next call overwrites.
+/// Holds the last answer of one object, a session or a renderer of exports.h. Each function below
+/// returns a pointer to the answer, and all but last() overwrite it. The page's JavaScript reads
+/// the answer from the memory of the WebAssembly module.
 class Answerer {
  public:
   /// Keeps a copy of the bytes.

@@ -30,9 +30,10 @@ class BrowserRenderer {
   BrowserRenderer() : pool_(1) {}
 
   /// Begins a scene. `manifest`: the digest of the manifest. `text`: the manifest itself. The
-  /// caller has checked that both match. Returns the blobs that the scene needs, in the order in
-  /// which they are used, without the blobs that loaded scenes have already. If another scene was
-  /// begun and not built, drops that scene. INVALID_ARGUMENT: the manifest is broken.
+  /// caller has checked that the text has this digest. Returns the blobs that the scene needs, in
+  /// the order in which they are used, without the blobs that loaded scenes have already. If
+  /// another scene was begun and not built, drops that scene. INVALID_ARGUMENT: the manifest is
+  /// broken.
   absl::StatusOr<std::vector<BlobRef>> begin_scene(const wire::Digest& manifest, std::string text);
   /// Takes a blob of the scene that was begun. The caller has checked the digest of the bytes.
   /// INVALID_ARGUMENT: the scene has no blob with this digest and size. FAILED_PRECONDITION: no
@@ -44,8 +45,8 @@ class BrowserRenderer {
   /// Frees a scene, if it is loaded.
   void drop_scene(const wire::Digest& manifest) { scenes_.erase(manifest); }
   /// Returns the row step of a scene. A band should be divided only at rows that are multiples of
-  /// this step. It is 16 if pixels share paths, because rows of a tile then have to be rendered
-  /// together; otherwise it is 1. NOT_FOUND: the scene is not loaded.
+  /// this step. The step is 16 if pixels share paths, because the 16 rows of a tile then have to be
+  /// rendered together. Otherwise the step is 1. NOT_FOUND: the scene is not loaded.
   absl::StatusOr<std::uint32_t> row_step(const wire::Digest& manifest) const;
 
   /// Renders rows of a task's band. The sums of these rows are the same as if the whole band were

@@ -23,7 +23,8 @@ std::string bytes_of(const std::optional<farm::FromWorker>& message) {
   return message ? message->SerializeAsString() : "";
 }
 
-/// Checks a text of WorkerInfo. `name` is its name in the message, `most` its maximum in bytes.
+/// Checks that a text of WorkerInfo has 1 to `most` bytes and no control characters. `name` names
+/// the text in the error.
 absl::Status check_text(const char* name, const std::string& text, std::size_t most) {
   if (text.empty() || clean_text(text, most) != text) {
     return absl::InvalidArgumentError(

@@ -31,8 +31,9 @@ struct BrowserOrders {
 
 class BrowserSession {
  public:
-  /// INVALID_ARGUMENT: a text of `info` is empty, is too long or contains control characters, its
-  /// instance does not have 32 hexadecimal digits, or its number of threads is out of range.
+  /// Makes the session of the worker `info`. It is not connected yet. INVALID_ARGUMENT: a text of
+  /// `info` is empty, is too long or contains control characters, the instance does not have 32
+  /// hexadecimal digits, or the number of threads is out of range.
   static absl::StatusOr<BrowserSession> create(WorkerInfo info);
 
   const Session& session() const { return session_; }

@@ -130,8 +130,8 @@ struct BandsawRenderer {
 
 namespace {
 
-/// Calls `body` with the session and returns its answer. If the session could not be made, answers
-/// with the reason instead.
+/// Calls `body` with the session, and returns the answer of `body`. If the session could not be
+/// made, returns an answer with the reason instead.
 template <class Body>
 const BandsawAnswer* with(BandsawSession* session, Body body) {
   return session->session.ok() ? body(*session->session)

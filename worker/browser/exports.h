@@ -13,7 +13,7 @@
 extern "C" {
 
 /// Result of a call. If `failed` is 1, the bytes are the text of an error. Otherwise they are the
-/// answer that the comment of the function describes. If it describes no answer, there are no
+/// answer that the comment of the function describes. If no answer is described, there are no
 /// bytes. The answer belongs to the object that was called, and is valid until the next call.
 struct BandsawAnswer {
   const void* data;
@@ -43,6 +43,7 @@ const BandsawAnswer* bandsaw_session_answer(BandsawSession* session);
 /// such an answer, too. If the message is empty, there is nothing to send.
 const BandsawAnswer* bandsaw_session_hello(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_heartbeat(BandsawSession* session);
+/// Changes the number of threads and the memory for scenes that the next hello offers.
 const BandsawAnswer* bandsaw_session_offer(BandsawSession* session, uint32_t threads,
                                            double memory_bytes);
 /// Takes a message of the coordinator. The answer is JSON: {"stop": [task…], "start": {"task",

@@ -32,8 +32,8 @@ struct Entry {
   }
 };
 
-/// Returns true if the cache gives such names to its files. Only such files are removed. So if a
-/// user names a wrong folder as the cache, its other files are safe.
+/// Returns true if the file has a name as the cache gives to its files. The cache removes no other
+/// files. So if a user names a wrong folder as the cache, the user's files in the folder are safe.
 bool is_ours(const std::filesystem::path& path) {
   const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();

@@ -19,7 +19,8 @@ namespace bandsaw::worker {
 
 class BlobCache : public BlobSource {
  public:
-  /// Creates the folder if necessary. Fails if it cannot be created or used; the error names it.
+  /// Opens the cache in `folder`, which may take `max_bytes`. Creates the folder if necessary. If
+  /// the folder cannot be created or used, the error names the folder.
   static absl::StatusOr<std::unique_ptr<BlobCache>> open(std::string folder,
                                                          std::uint64_t max_bytes);
 
@@ -28,8 +29,8 @@ class BlobCache : public BlobSource {
   /// file was damaged (the digest is checked at each call) or could not be read; it is now removed.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
-  /// A download in progress. The bytes written so far are kept when it is destroyed, and the next
-  /// download resumes after them.
+  /// A download in progress. When this object is destroyed, the bytes written so far are kept, and
+  /// the next download of the blob resumes after them.
   class Download {
    public:
     Download(BlobCache& cache, const wire::Digest& digest, int fd, std::uint64_t offset);

@@ -13,12 +13,14 @@ class Backoff {
  public:
   explicit Backoff(std::uint64_t seed) : random_(seed) {}
 
+  /// Returns the time to wait before the next attempt.
   std::chrono::milliseconds next() {
     const auto wait = next_;
     next_ = std::min(next_ * 2, kMax);
     return std::chrono::milliseconds(
         std::uniform_int_distribution<std::int64_t>(wait.count() / 2, wait.count())(random_));
   }
+  /// To be called after a success: the next wait is short again.
   void reset() { next_ = kMin; }
 
  private:

@@ -1,5 +1,6 @@
-// Two threads take tasks in order. Each loads the task's scene and renders its band; the later task
-// waits at each step until the earlier one has got further (wait_for_earlier).
+// Two threads take tasks in order. Each loads the scene of its task and renders the band of its
+// task. The later task waits for the earlier task twice (wait_for_earlier): until the scene of the
+// earlier task is loaded, and until the first row of the earlier task is finished.
 
 #include "worker/executor/executor.h"
 

@@ -22,8 +22,9 @@ namespace bandsaw::worker {
 /// `preparing` and `rendering` are called any number of times, then `finished` or `failed` once.
 /// `preparing` reports that the scene is being loaded; `prepared` is a measure of the progress,
 /// which grows from call to call. `rendering` reports the number of finished rows. It reports 0
-/// when rendering begins, and again after each step of preparations such as the training of path
-/// guiding, which come before the first row. A task that is stopped gets no further callbacks.
+/// when rendering begins. Before the first row there may be preparations, such as the training of
+/// path guiding, and `rendering` reports 0 after each of their steps. A task that is stopped gets
+/// no further callbacks.
 struct ExecutorEvents {
   std::function<void(TaskId, std::uint64_t prepared)> preparing;
   std::function<void(TaskId, std::uint32_t rows_done)> rendering;

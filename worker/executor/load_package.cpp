@@ -19,8 +19,8 @@ namespace {
 
 // The interval at which a wait checks `stop`, and whether another worker has finished a download.
 constexpr auto kPollInterval = std::chrono::milliseconds(50);
-// After so many downloads whose bytes do not have the digest, the source itself is considered
-// wrong.
+// After this many downloads whose bytes do not have the blob's digest, the blob is not downloaded
+// again, because the coordinator itself seems to send wrong bytes.
 constexpr int kMaxWrongDownloads = 3;
 /// The interval at which the building of a scene reports progress.
 constexpr auto kReportInterval = std::chrono::milliseconds(1000);

@@ -19,9 +19,9 @@ namespace bandsaw::worker {
 /// Receives the next bytes of a blob; an error ends the transfer.
 using TakeBytes = std::function<absl::Status(absl::Span<const std::byte>)>;
 
-/// Passes all bytes of the blob from `offset` to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: the caller
-/// should try again from the first missing byte. INVALID_ARGUMENT: the blob has fewer than `offset`
-/// bytes.
+/// Calls `take` with all bytes of the blob from `offset` to the end. UNAVAILABLE,
+/// DEADLINE_EXCEEDED: the caller should try again from the first missing byte. INVALID_ARGUMENT:
+/// the blob has fewer than `offset` bytes.
 using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std::uint64_t offset,
                                                 const TakeBytes& take)>;
 

@@ -1,3 +1,6 @@
+// Once in each interval, a thread compares the number of calls that the pool has completed with the
+// number at the last look.
+
 #include "worker/executor/pool_watch.h"
 
 #include <utility>

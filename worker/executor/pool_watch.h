@@ -1,8 +1,8 @@
 #pragma once
 
 // Reports that a pool of threads makes progress, for a function that waits for the pool and cannot
-// report it itself. The worker uses this while BVHs are built: that may take minutes, and the
-// coordinator takes a band without progress from the worker.
+// report the progress itself. The worker uses PoolWatch while BVHs are built. Building may take
+// minutes, and if the coordinator hears of no progress, it gives the band to another worker.
 
 #include <chrono>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace bandsaw::worker {
 
 /// As long as the object exists, a thread of its own looks at the pool once in each interval. If
 /// the pool has completed calls (Pool::calls_done) since the last look, or since the object was
-/// made, the thread calls `advanced`. It does not call it for a pool that hangs.
+/// made, the thread calls `advanced`. If the pool hangs, `advanced` is not called.
 class PoolWatch {
  public:
   /// `pool` MUST outlive the object.

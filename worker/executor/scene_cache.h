@@ -28,7 +28,8 @@ class SceneCache {
  public:
   explicit SceneCache(LoadScene load) : load_(std::move(load)) {}
   /// Returns the scene, loading it if necessary. One scene is loaded at a time, because loading
-  /// uses all cores; other callers wait. Returns the error of LoadScene, which is not cached.
+  /// uses all cores; other callers wait. If LoadScene fails, returns its error. The next call then
+  /// loads the scene again.
   absl::StatusOr<std::shared_ptr<const Scene>> get(const wire::Digest& manifest,
                                                    const std::atomic<bool>& stop,
                                                    const Prepared& prepared) EXCLUDES(mutex_);

@@ -20,8 +20,8 @@ namespace bandsaw::worker {
 /// retry.
 using SendBand = std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&)>;
 
-/// Called from the uploader's thread when a band is finally acknowledged, or rejected with a
-/// permanent error.
+/// Called from the uploader's thread when a band is acknowledged, or rejected with a permanent
+/// error.
 using Settled =
     std::function<void(TaskId, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome)>;
 

@@ -12,7 +12,8 @@ namespace bandsaw::worker {
 class CoordinatorApi {
  public:
   virtual ~CoordinatorApi() = default;
-  /// Passes the bytes of a blob from `offset` on to `take`; an error of `take` ends the transfer.
+  /// Calls `take` with the bytes of a blob from `offset` to the end. An error of `take` ends the
+  /// transfer.
   /// UNAVAILABLE, DEADLINE_EXCEEDED: try again, from the first missing byte. NOT_FOUND: the
   /// coordinator has no such blob. May be called from several threads at the same time.
   virtual absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset,

@@ -27,8 +27,8 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
                      band.pixels.counters, band.cost, instance, lease);
 }
 
-// The deadline of one download of a blob. It is sufficient for a slow connection; an interrupted
-// transfer resumes at its offset.
+// The deadline of one transfer of a blob. It is sufficient for a slow connection, because the next
+// transfer continues where an interrupted transfer has ended.
 constexpr std::chrono::milliseconds kTransferDeadline{60'000};
 
 absl::Status not_connected() { return absl::UnavailableError("not connected"); }

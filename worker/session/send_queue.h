@@ -21,8 +21,9 @@ class SendQueue {
   void close() EXCLUDES(mutex_);
 
   enum class Next { kMessage, kHeartbeat, kClosed };
-  /// Waits until there is a message (moved to `message`), a heartbeat is due (`heartbeat_interval`
-  /// after the last one, or beat_now), or the queue is closed and empty.
+  /// Waits for one of three events, and returns it. kMessage: a message was moved from the queue to
+  /// `message`. kHeartbeat: a heartbeat is due, because `heartbeat_interval` has passed since the
+  /// last one or because of beat_now(). kClosed: the queue is closed and empty.
   Next next(std::chrono::milliseconds heartbeat_interval, farm::FromWorker& message)
       EXCLUDES(mutex_);
 

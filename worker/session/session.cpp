@@ -24,6 +24,7 @@ std::string plain(absl::string_view text, std::size_t most) {
   return clean_text(line, most);
 }
 
+/// Returns the message that the band of a lease failed, with the last lines of `log`.
 farm::FromWorker failure(std::uint64_t lease, const std::string& reason,
                          const std::vector<std::string>& log) {
   farm::FromWorker message;

@@ -1,5 +1,5 @@
-// Each method locks the session, calls the method of Session, and puts messages into the send queue
-// of the current stream, if there is one.
+// Each method locks the session and calls methods of Session. If Session returns messages, they are
+// put into the send queue of the current stream.
 
 #include "worker/session/shared_session.h"
 

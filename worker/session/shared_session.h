@@ -20,7 +20,8 @@ class SharedSession {
   /// Starts a new stream. Returns its send queue, whose first message is Hello.
   std::shared_ptr<SendQueue> open_stream() EXCLUDES(mutex_);
   void close_stream() EXCLUDES(mutex_);
-  /// Processes a message. Its answers have been put into the send queue when this returns.
+  /// Processes a message of the coordinator, and puts the answers into the send queue. Returns what
+  /// the caller has to do.
   SessionEffects receive(const farm::ToWorker& message) EXCLUDES(mutex_);
   std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
   /// Returns the heartbeat to send; std::nullopt before Welcome.
@@ -45,7 +46,8 @@ class SharedSession {
   /// Removes a finished band after the coordinator has stored its pixels, or has answered that they
   /// are duplicate or unwanted.
   void settled(TaskId task) EXCLUDES(mutex_);
-  /// Returns lease 0 if the band is no longer held. UNAVAILABLE: not connected to a coordinator.
+  /// Returns the present lease of a band; lease 0 if the band is no longer held. UNAVAILABLE: not
+  /// connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
   // For shutdown.
