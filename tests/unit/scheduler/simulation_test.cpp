@@ -418,7 +418,7 @@ TEST(Simulation, ACalmFarmRendersAllFrames) {
   });
 }
 
-TEST(Simulation, AWrongWorkerDoesNotAffectOthers) {
+TEST(Simulation, EveryJobEndsAlthoughSomeWorkersReturnWrongResults) {
   for_seeds(10'001, 300, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {.lies = true}).run(random_jobs(seed));
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;

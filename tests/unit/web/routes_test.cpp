@@ -142,7 +142,7 @@ TEST_F(RoutesTest, AJobIsPausedResumedGivenAPriorityAndCancelled) {
   EXPECT_EQ(post(job + "/pause")->status, 409);
 }
 
-TEST_F(RoutesTest, MissingThingsAre404) {
+TEST_F(RoutesTest, MissingThingsAre404AndFilesOfAJobThatIsNotDoneAre409) {
   EXPECT_EQ(get("/api/jobs/7")->status, 404);
   EXPECT_EQ(get("/api/jobs/99999999999999999999")->status, 404);
   EXPECT_THAT(error_of(post("/api/jobs/7/cancel")), HasSubstr("there is no job 7"));
