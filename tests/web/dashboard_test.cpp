@@ -306,6 +306,9 @@ TEST_F(DashboardTest, APictureThatWasNotLoadedIsRequestedAgain) {
   EXPECT_TRUE(browser.wait("document.querySelector('.thumb')?.naturalWidth > 0"));
 }
 
+// In the gallery, the first menu (select) chooses the width of the image, the second the number of
+// samples. A click on `.face`, the picture of a card, renders the scene, or opens the job that has
+// rendered it. `.took` shows the render time.
 TEST_F(DashboardTest, TheGalleryFitsAPhoneAndRendersAScene) {
   Browser browser({.width = 390, .height = 844, .pixel_ratio = 2, .phone = true});
   enter(browser);
