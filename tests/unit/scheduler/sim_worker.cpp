@@ -273,7 +273,7 @@ void SimWorker::send(const input::BandStored& band, LeaseId id) {
     later(chance_.between(0.001, 0.05), [this, id] { drop(id); });
   };
   if (nature_.browser && !coordinator_.scheduler().is_browser(band.instance)) {
-    // The real coordinator also refuses the band of a tab of which it has not received Hello.
+    // The real coordinator also refuses the bands of a tab that has not joined.
     reply(PutOutcome::kTryAgain);
   } else {
     coordinator_.put_band(band, reply);
