@@ -13,10 +13,11 @@ TEST(QrText, EachCharacterShowsTwoModulesInBlackOnWhite) {
   // A square of two modules, dark on its diagonal.
   const std::string text = qr_text({.side = 2, .dark = {true, false, false, true}});
   const std::vector<std::string> lines = absl::StrSplit(text, '\n');
-  // With the margin, the code has ten rows, two in each line. The last line ends with a line break.
+  // With a margin of four modules on each side, the code has ten rows of modules. A line of text
+  // shows two rows. The text ends with a line break, so the sixth element of `lines` is empty.
   ASSERT_EQ(lines.size(), 6U);
-  const std::string begin = "\x1b[38;5;16;48;5;231m";
-  const std::string end = "\x1b[0m";
+  const std::string begin = "\x1b[38;5;16;48;5;231m";  // sets black on white
+  const std::string end = "\x1b[0m";                   // resets the colours
   EXPECT_EQ(lines[0], begin + "          " + end);
   EXPECT_EQ(lines[2], begin + "    ▀▄    " + end);
   EXPECT_EQ(lines[4], begin + "          " + end);

@@ -1,4 +1,5 @@
-// Parsing of times, percentages and ranges of rows.
+// Parsing of times, percentages, ranges of rows and whole numbers in options of the command line. A
+// time is from 0.1 s to 720 h, and rows lie in [0, 65536).
 
 #include "coordinator/cli/options/quantities.h"
 

@@ -29,7 +29,8 @@ SceneDescription scene() {
 }
 
 // A triangle and two instances of a mesh of two triangles are five triangles. The sphere and the
-// two triangles of the first instance emit light.
+// two triangles of the first instance emit light. The bounds are those of the sphere of radius 2,
+// except for -7 (the mirrored instance), 9 (the loose triangle) and 10 (the moved instance).
 TEST(SceneSummary, CountsTheParts) {
   const SceneSummary summary = summary_of(scene(), {}, 1234);
   EXPECT_EQ(summary.triangles, 5u);

@@ -82,6 +82,8 @@ TEST(PartFile, IsReadAsWritten) {
   EXPECT_EQ(records, 2);
 }
 
+// The header holds the exposure and the tone of the image. Without a header they have their
+// defaults.
 TEST(PartFile, MayHaveNoHeader) {
   const test::TempDir folder;
   const auto bytes = encode_band_record(record()).value();

@@ -51,7 +51,8 @@ class NoisyImage {
   /// target.
   double ideal_samples() const { return variance_ / (kTarget * kTarget); }
 
-  /// Returns the sums of these samples, with new random errors.
+  /// Returns the sums of the samples of each pixel, with new random errors. `tiles` tells which of
+  /// `samples` a pixel takes.
   BandPixels render(const SampleRange& samples, const TileSamples& tiles) {
     std::vector<double> errors;
     for (const double deviation : deviations_) {
@@ -112,8 +113,8 @@ double true_error(const Image& image) {
 }
 
 /// Runs one job until it stops. `adaptive`: half tiles take different numbers of samples, which are
-/// planned from the errors of the half tiles. `with_margin`: the job compares the upper bound of
-/// the error with the target, as jobs do; otherwise it compares the estimate itself.
+/// planned from the errors of the half tiles. If `with_margin` is true, the job compares the upper
+/// bound of the error with the target, as a real job does. Otherwise it compares the estimate.
 Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   NoisyImage image(errors, random);
   LocalPlan plan(StopAtError{.relative_rmse = kTarget, .adaptive = adaptive}, kGrid);
@@ -158,7 +159,8 @@ Jobs run_many(Errors errors, bool adaptive, bool with_margin) {
 }
 
 // For 400 jobs, the standard error of a share of 95 % is 1.1 %. The cost is above 1 because of the
-// margin, and because a job stops at checkpoints only.
+// margin, and because a job compares its error with the target only at checkpoints, which are
+// certain numbers of samples.
 TEST(StopAtError, NineteenOfTwentyImagesMeetTheirTarget) {
   const Jobs jobs = run_many(Errors::kOwn, false, true);
   EXPECT_GE(jobs.met, 0.95 * kJobs);

@@ -23,6 +23,8 @@ using testing::Not;
 
 constexpr RenderSettings kSettings{.width = 8, .height = 8, .max_depth = 4, .seed = 1};
 
+/// Runs the study of a scene. `every_object`: the same scene without a tree of bounding boxes, for
+/// Method::kEveryObject; nullptr: this method is left out.
 StudyOfScene study_of(const Scene& scene, const StudyPlan& plan,
                       const Scene* every_object = nullptr) {
   Pool pool(1);
@@ -40,8 +42,8 @@ const StudyLine& line(const StudyOfScene& study, Method method) {
   return *found;
 }
 
-/// In the middle of each pixel of kSettings there is an area light with a twentieth of the pixel's
-/// area. The rest of the image is black.
+/// Returns a scene with an area light in the middle of each pixel of kSettings. The light covers a
+/// twentieth of the pixel. The rest of the image is black.
 std::shared_ptr<const Scene> rare_light() {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
@@ -149,7 +151,9 @@ TEST(Study, AStopRequestEndsTheStudy) {
 }
 
 /// Returns a study with the lines of two methods. The error of kFull is 10 % at 16 samples and 1 s,
-/// and 5 % at 64 samples and 4 s. The error of kPixelStops is 10 % at both.
+/// and 5 % at 64 samples and 4 s. The error of kPixelStops is 10 % at 16 and at 64 samples. The
+/// members of a StudyPoint are the samples, the relative RMSE, the relative MSE, the bias, the
+/// standard error of the bias, the CPU seconds and the rays.
 std::vector<StudyOfScene> known() {
   StudyOfScene study{.scene = "a|\"b\" & <c>", .reference_error = 0.001, .lines = {}};
   study.lines.push_back(
@@ -173,7 +177,7 @@ TEST(StudyText, ShowsTheCostOfOnePercent) {
 
 TEST(StudyText, TheCsvHasALineForEachPoint) {
   const std::string csv = study_csv(known());
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);  // the header and four points
   EXPECT_THAT(csv,
               HasSubstr("\"a|\"\"b\"\" & <c>\",\"all techniques\",16,0.1,0.01,0,0,1,4000000,"));
 }
@@ -194,8 +198,8 @@ TEST(StudyText, AnEmptyPlotHasNoInvalidNumbers) {
   EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
 }
 
-// A clean image needs the image as rendered, the guides (images by which the filter finds edges)
-// and the filter, so it costs more.
+// A clean image is a denoised one. It needs the image as rendered, the guides (images by which the
+// filter finds edges) and the filter, so it costs more than the image as rendered.
 TEST(Study, CleanImagesAreComparedWithRenderedImages) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(),

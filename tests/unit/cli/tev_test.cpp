@@ -28,7 +28,7 @@ TEST(Tev, AnImageIsCreatedWithItsNameSizeAndChannels) {
 
 TEST(Tev, RowsAreSentAsTheyLieInMemory) {
   const Image image{.width = 1, .height = 3, .pixels = {{9, 9, 9}, {1, 0, 0.5F}, {0, -2, 0}}};
-  EXPECT_EQ(tev::update_rows("b", image, 1, 3),
+  EXPECT_EQ(tev::update_rows("b", image, /*first=*/1, /*last=*/3),
             bytes("\x6a\0\0\0"  // number of bytes of the packet, 106
                   "\x06"        // update, third version
                   "\0"          // leave the focus
@@ -42,7 +42,7 @@ TEST(Tev, RowsAreSentAsTheyLieInMemory) {
                   "\0\0\0\0\0\0\0\0"  // offsets of the channels in the data, in floats
                   "\x01\0\0\0\0\0\0\0"
                   "\x02\0\0\0\0\0\0\0"
-                  "\x03\0\0\0\0\0\0\0"  // their strides, in floats
+                  "\x03\0\0\0\0\0\0\0"  // strides of the channels, in floats
                   "\x03\0\0\0\0\0\0\0"
                   "\x03\0\0\0\0\0\0\0"
                   "\0\0\x80\x3f\0\0\0\0\0\0\0\x3f"  // IEEE 754: 1, 0, 0.5

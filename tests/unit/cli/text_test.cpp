@@ -1,4 +1,5 @@
-// Texts for people: numbers, times, percentages, and the width of a text in a terminal.
+// Texts for people: numbers, times, percentages, the width of a text in a terminal, words of a
+// shell command, and the suggestion of a similar word.
 
 #include "coordinator/cli/base/text.h"
 
@@ -66,7 +67,7 @@ TEST(Text, AWordForTheShellIsQuotedOnlyIfNecessary) {
   EXPECT_EQ(shell_word("out/walk.####.png"), "out/walk.####.png");
   EXPECT_EQ(shell_word("a b.png"), "'a b.png'");
   EXPECT_EQ(shell_word("it's.png"), R"('it'\''s.png')");
-  EXPECT_EQ(shell_word("####.png"), "'####.png'");
+  EXPECT_EQ(shell_word("####.png"), "'####.png'");  // a # at the start is a comment
   EXPECT_EQ(shell_word("~/$x"), "'~/$x'");
   EXPECT_EQ(shell_word(""), "''");
 }

@@ -28,8 +28,9 @@ class Videos : public testing::Test {
   const test::TempDir folder_;
 };
 
-// BT.709 gives pure red the luma 16 + 219 * 0.2126 = 63; BT.601 gives it 81. Width and height are
-// odd, so the video has one more column and one more row, which are black.
+// BT.709 gives pure red the luma 16 + 219 * 0.2126 = 63, and BT.601 gives pure red the luma 81. So
+// the luma of the first and of the last pixel tells the standard. Width and height are odd, so the
+// video has one more column and one more row, which are black.
 TEST_F(Videos, HaveTheColorsThatTheirTagsState) {
   constexpr std::uint32_t kWidth = 63;
   constexpr std::uint32_t kHeight = 35;

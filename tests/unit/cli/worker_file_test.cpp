@@ -1,5 +1,7 @@
 // The coordinator identifies worker programs by their bytes, without running them. It reads the ELF
-// header and the mark, which is a record in the program that states the version.
+// header and the mark of the program. The mark is a record with the version of the program, the
+// version of its protocol and the version of the pixels that it renders. fitting_mark() returns a
+// mark that the coordinator accepts.
 
 #include "coordinator/cli/machines/worker_file.h"
 

@@ -21,7 +21,8 @@ using test::Finished;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A stand-in for the program: prints its architecture and its arguments.
+/// Returns a shell script that stands in for the worker program of `machine`. The script prints the
+/// name of the machine and the arguments that the script gets.
 std::string program(Machine machine) {
   return absl::StrCat("#!/bin/sh\necho ", machine_name(machine), " started \"$@\"\n");
 }
@@ -49,10 +50,11 @@ class WorkerLine : public ::testing::Test {
   Finished paste(const std::string& uname) {
     write("uname", uname);
     write("bin/uname", "#!/bin/sh\n[ \"$*\" = -m ] && cat " + folder_.path() + "/uname\n");
-    return test::run({"/bin/sh", "-c",
-                      absl::StrCat("cd ", folder_ / "home", " && ",
-                                   worker_line("http://desk:1", std::nullopt, digests_, "JOIN"))},
-                     {"PATH=" + folder_ / "bin" + ":/usr/bin:/bin"});
+    return test::run(
+        {"/bin/sh", "-c",
+         absl::StrCat("cd ", folder_ / "home", " && ",
+                      worker_line("http://desk:1", /*public_key=*/std::nullopt, digests_, "JOIN"))},
+        {"PATH=" + folder_ / "bin" + ":/usr/bin:/bin"});
   }
   bool downloaded() const { return std::filesystem::exists(folder_ / "downloaded"); }
   bool home_is_empty() const { return std::filesystem::is_empty(folder_ / "home"); }

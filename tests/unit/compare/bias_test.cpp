@@ -1,5 +1,7 @@
-// The test for bias between two images with independent noise: what it finds, and how often it
-// raises a false alarm.
+// The test for bias between two images with independent noise: which bias it finds, and how often
+// it raises a false alarm. It compares blocks of 16 x 16 pixels. The `t` of a block or of the image
+// is the mean difference divided by its standard error. A block is suspicious if its |t| is too
+// large.
 
 #include "renderlib/compare/bias.h"
 
@@ -28,7 +30,7 @@ Image noisy(const Image& image, float strength, std::uint64_t seed) {
 
 TEST(Bias, NoiseAloneIsNotBias) {
   const BiasTest test = test_bias(noisy(waves(128, 96), 0.1F, kSeed), waves(128, 96));
-  EXPECT_EQ(test.blocks, 48u);  // of 16 x 16 pixels
+  EXPECT_EQ(test.blocks, 48u);  // 8 x 6
   EXPECT_LT(std::abs(test.t), 4);
   EXPECT_EQ(test.suspicious_blocks, 0u);
 }
@@ -92,8 +94,9 @@ TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
   EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
-// One of 33 columns is 1.5 times as bright as in the reference. The last column of blocks has only
-// this column of pixels, but its pixels do not count more than others.
+// The last of 33 columns of pixels is 1.5 times as bright as in the reference. This
+// column is the only one of the blocks at the right edge. Even so, its pixels do not count more
+// than other pixels.
 TEST(Bias, EveryPixelHasTheSameWeight) {
   Image image = uniform(33, 32, 1);
   for (std::uint32_t y = 0; y < 32; ++y) {

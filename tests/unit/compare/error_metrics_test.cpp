@@ -1,4 +1,5 @@
-// Error metrics between two images: RMSE, PSNR, and the metrics without the worst thousandth of the
+// Error metrics between two images: RMSE, relative RMSE, relative MSE, MAPE (mean absolute
+// percentage error) and PSNR. The trimmed relative MSE leaves out the worst thousandth of the
 // pixels.
 
 #include "renderlib/compare/error_metrics.h"
@@ -53,7 +54,8 @@ TEST(ErrorMetrics, ADifferenceInOneChannelOfOnePixelIsFound) {
 }
 
 // The image has 2,000 pixels, so the worst two are left out. The other 1,998 pixels have 5,994
-// values, of which one differs by 1 from the reference 1.
+// values. One of these values differs by 1 from the reference, which is 1, so its relative squared
+// error is 1 / (1 + 0.01).
 TEST(ErrorMetrics, TrimmingLeavesOutTheWorstThousandth) {
   Image a = uniform(50, 40, 1);
   a.pixels[7].r = 100;
@@ -71,7 +73,7 @@ TEST(ErrorMetrics, AnImageOfOnePixelIsNotTrimmedAway) {
 
 TEST(ErrorMetrics, MetricsAreNanIfNoPixelIsFinite) {
   const ErrorMetrics metrics = error_metrics(uniform(3, 2, std::nanf("")), uniform(3, 2, 1));
-  EXPECT_EQ(metrics.not_finite, 18u);
+  EXPECT_EQ(metrics.not_finite, 18u);  // three values of each of the six pixels
   EXPECT_TRUE(std::isnan(metrics.rmse));
   EXPECT_TRUE(std::isnan(metrics.relative_mse));
   EXPECT_FALSE(metrics.identical);

@@ -1,4 +1,5 @@
-// Perceptual metrics, FLIP and SSIM, against closed forms.
+// Perceptual metrics, FLIP and SSIM, against closed forms. The file also tests the
+// conversions of colours that the metrics use, and the false colours that show errors.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-// Published values of sRGB's primaries.
+// The expected values are those published for white and the primaries of sRGB.
 TEST(Perceived, LabOfThePrimariesHasThePublishedValues) {
   expect_near(lab(xyz_over_white({1, 1, 1})), {100, 0, 0}, 1e-9);
   expect_near(lab(xyz_over_white({1, 0, 0})), {53.24, 80.09, 67.20}, 0.05);
@@ -41,9 +42,9 @@ TEST(Flip, EqualImagesDoNotDiffer) {
   EXPECT_EQ(mean(hdr_flip(waves(40, 30), waves(40, 30))), 0);
 }
 
-// Computed by hand from equations 7 to 9 of Andersson et al. 2020 (compare/flip.h), without
-// features. The HyAB distance of black and white is 100. The largest distance, that of green and
-// blue, is 203.3.
+// The expected value follows from equations 7 to 9 of Andersson et al. 2020 (compare/flip.h). The
+// images have no edges, so their features do not differ. The HyAB distance of black and white is
+// 100. The largest distance, which is that of green and blue, is 203.3.
 TEST(Flip, BlackAgainstWhiteEqualsTheClosedForm) {
   const double largest = std::pow(203.31, 0.7);
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);
@@ -90,7 +91,9 @@ TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
   EXPECT_GT(error.values[30 * 60 + 34], 1.1 * error.values[30 * 60 + 50]);
 }
 
-// A difference in a highlight is invisible at one exposure and seen at another.
+// A highlight that is brighter than a screen can show is clamped by flip(), so a difference in it
+// is not seen. hdr_flip() also compares the images at lower exposures, at which the difference is
+// seen.
 TEST(Flip, HdrFlipSeesDifferencesInHighlights) {
   Image a = uniform(40, 40, 0.1F);
   Image b = a;

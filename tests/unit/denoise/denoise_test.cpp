@@ -1,6 +1,6 @@
-// The denoiser: noise is removed, detail is kept, its reported error is honest, and its bits do not
-// depend on the number of threads. Its guides are noise-free images, albedo and normal, that show
-// where edges are.
+// The denoiser removes noise, keeps detail and reports an honest error. The bits of its result do
+// not depend on the number of threads. The guides of an image are two images that show where edges
+// are and have almost no noise. One shows the albedo, and one shows the normal and the distance.
 
 #include "renderlib/denoise/denoise.h"
 
@@ -31,7 +31,7 @@ Image image_of(const Picture& picture) {
   return image;
 }
 
-/// Approximately normal: the sum of twelve uniform numbers.
+/// Returns a nearly normal number of mean 0 and variance 1: the sum of twelve uniform numbers.
 float normal(test::Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) {
@@ -41,8 +41,8 @@ float normal(test::Random& random) {
 }
 
 /// Returns a noisy picture for the denoiser. The two halves of its samples have independent noise.
-/// `noise` is the standard deviation of the mean of both halves. The guides are those of a plane
-/// that faces the camera.
+/// `noise` is the standard deviation of the mean of both halves. The guides are those of a grey
+/// plane that faces the camera.
 DenoiseInput noisy(const Picture& picture, float noise, std::uint64_t seed) {
   test::Random random(seed);
   const Image truth = image_of(picture);
@@ -63,6 +63,7 @@ DenoiseInput noisy(const Picture& picture, float noise, std::uint64_t seed) {
   return input;
 }
 
+/// Denoises the image on `threads` threads.
 Denoised denoised(const DenoiseInput& input, int threads = 2) {
   Pool pool(threads);
   return denoise(input, &fit, pool);
@@ -189,7 +190,7 @@ TEST(Denoise, OneBrightPathIsNotSpread) {
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     ASSERT_LT(std::abs(clean.image.pixels[i].g - truth.pixels[i].g), 0.2f) << "pixel " << i;
   }
-  // The reported error includes that of the outlier.
+  // The reported error includes the error of the bright pixel.
   EXPECT_GT(clean.total.rmse_raw, 1);
 }
 

@@ -1,4 +1,5 @@
-// The error and the bias of a filter, estimated from two independent halves of the samples.
+// The error and the bias of a filter, estimated from two independent parts of the samples. The
+// parts are called halves, but need not have the same size.
 
 #include "renderlib/denoise/halves.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 128;
 
-/// Approximately normal: the sum of twelve uniform numbers.
+/// Returns a nearly normal number of mean 0 and variance 1: the sum of twelve uniform numbers.
 float gaussian(test::Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) {
@@ -60,7 +61,7 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   const Denoised clean =
       with_error_of_halves(input, filtered(input.mean, bias), filtered(input.first, bias),
                            filtered(second_part(input), bias), pool);
-  const double variance = 0.01 / 3;
+  const double variance = 0.01 / 3;  // of a filtered pixel
   EXPECT_NEAR(clean.total.rmse_raw, 0.1, 0.005);
   EXPECT_NEAR(clean.total.rmse_clean, std::sqrt(variance + bias * bias), 0.005);
   EXPECT_NEAR(clean.total.bias_share, bias * bias / (variance + bias * bias), 0.05);

@@ -109,6 +109,7 @@ TEST_F(CollectorTest, ForgetsTheOldestJobsBeyondTheMaximumBytes) {
   EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
 }
 
+// Job 1 has one file of 1,000 bytes, and job 2 has three. So the jobs have 4,000 bytes together.
 TEST_F(CollectorTest, CountsAllFilesOfAJob) {
   result(1, 1'000, kNow - 9 * kDay);
   result(2, 1'000, kNow - 8 * kDay);
@@ -120,6 +121,8 @@ TEST_F(CollectorTest, CountsAllFilesOfAJob) {
   EXPECT_THAT(collector({.bytes = 3'500}).to_forget(jobs, kNow), ElementsAre(1));
 }
 
+// For an hour after its end, a job is not forgotten because of its bytes. So job 2, which ended a
+// minute ago, stays, although the stored blob alone exceeds the maximum of 10 bytes.
 TEST_F(CollectorTest, AFreshResultIsNotForgottenForItsSize) {
   result(1, 1'000, kNow - kDay);
   result(2, 1'000, kNow - 60);

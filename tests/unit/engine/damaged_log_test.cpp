@@ -1,5 +1,6 @@
-// The band log of an unfinished job is damaged on disk. The damage is detected while the
-// coordinator runs, or when it is restarted, and the lost bands are rendered again.
+// The band log of an unfinished job is damaged on disk. The band log is the file with the bands
+// that workers have rendered. The damage is detected while the coordinator runs, or when the
+// coordinator is restarted. Then the lost bands are rendered again.
 
 #include <gtest/gtest.h>
 
@@ -62,8 +63,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     std::atomic<int> stored{0};
     FakeWorker one(farm_.scene(), worker,
                    [&](const Band&, const absl::StatusOr<BandOutcome>& outcome) {
-                     // This runs on the worker's thread. The pause takes effect before the worker
-                     // begins the band after its next one.
+                     // This runs on the worker's thread. After the pause, the worker may still
+                     // render one band, but not two.
                      if (outcome.ok() && ++stored == 1) {
                        EXPECT_TRUE(tell(&Engine::pause, job).ok());
                      }
@@ -83,7 +84,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   }
   /// Lets the running coordinator read the damaged log, and waits until it reports the damage.
   void find_damage(JobId job) {
-    // The film is built again from the log, without the bands of the worker "wrong".
+    // The quarantine removes the bands of the worker "wrong" from the job. So the coordinator reads
+    // the log again and adds up the bands of the other workers.
     ASSERT_TRUE(quarantine("wrong").ok());
     std::string why;
     while (why.find("damaged on the coordinator's disk") == std::string::npos) {
@@ -99,7 +101,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   void expect_right_image(JobId job) {
     const JobView view = farm_.wait_final(job);
     ASSERT_EQ(view.state, JobState::kDone) << view.reason;
-    EXPECT_EQ(view.samples_done, std::uint64_t{20} * 14 * kSamples)
+    EXPECT_EQ(view.samples_done, std::uint64_t{20} * 14 * kSamples)  // 20 x 14 pixels
         << "no sample must be lost or counted twice";
     const absl::StatusOr<StoredResult> result = farm_.result(job);
     ASSERT_TRUE(result.ok()) << result.status();

@@ -1,6 +1,6 @@
 // The whole engine with fake workers in threads: images have the bytes of a local render, and
-// invalid requests and bands are refused. A job is rendered in passes. A pass renders a range of
-// samples in all rows of the image.
+// invalid requests and bands are refused. A band is a range of samples of a range of rows. A job is
+// rendered in passes. A pass renders a range of samples in all rows of the image.
 
 #include "coordinator/engine/engine.h"
 
@@ -25,11 +25,14 @@ class EngineTest : public testing::Test {
  protected:
   EngineTest() { EXPECT_TRUE(farm_.start().ok()); }
 
+  /// Renders a band of the farm's scene, as a worker does.
   BandPixels rendered(const Band& band) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
     return *render_band(*farm_.scene(), farm_.settings(), band, pool, stop, [](std::uint32_t) {});
   }
+  /// Waits for the end of the job. Expects that it is done, has `samples` samples per pixel and has
+  /// the pixels of a local render.
   void expect_done(JobId job, std::uint64_t samples) {
     const JobView view = farm_.wait_final(job);
     EXPECT_EQ(view.state, JobState::kDone) << view.reason;

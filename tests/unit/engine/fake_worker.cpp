@@ -15,6 +15,8 @@
 
 namespace bandsaw::coordinator {
 
+/// The engine calls a link where it would send messages to a worker over the network. The link
+/// keeps leases until the worker takes them. Thread-safe.
 class FakeWorker::Link : public WorkerLink {
  public:
   void welcome(const action::Welcome&, const std::string&) override {}
@@ -91,7 +93,7 @@ void FakeWorker::join(Engine& engine) {
   engine_ = &engine;
   link_ = std::make_shared<Link>();
   WorkerHello hello;
-  hello.instance = name_ + std::string(32 - name_.size(), '0');
+  hello.instance = name_ + std::string(32 - name_.size(), '0');  // the id of the worker's process
   hello.name = name_;
   hello.protocol = wire::kProtocol;
   hello.pixel_version = kPixelVersion;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Replacements of the engine's dependencies for tests: a clock that the test advances, and a
-// journal in memory that can fail as on a full disk.
+// journal in memory that can fail as on a full disk. From the records of a journal, a restarted
+// engine restores its state.
 
 #include <atomic>
 #include <functional>
@@ -15,8 +16,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The time of a FakeClock, in seconds. The test keeps a pointer to it and advances it.
-/// Thread-safe.
+/// The time of a FakeClock, in seconds. The test keeps a pointer to the FakeTime and advances the
+/// time. Thread-safe.
 class FakeTime {
  public:
   void advance(double seconds) { now_ = now_ + seconds; }

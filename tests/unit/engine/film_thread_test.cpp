@@ -1,8 +1,9 @@
-// The film's thread, which adds stored bands to the images of jobs and makes previews, error
-// estimates and results. A film can be built again from the band log, for example without the bands
-// of a worker that returned wrong pixels. Damage of the log is found only when a film is built
-// again. A pass renders a range of samples in all rows. FilmThread::plan(job, samples) announces a
-// pass that ends at this number of samples.
+// The film's thread. A film holds the sums of the samples of a job's image. The thread adds stored
+// bands to the films of jobs, and makes previews, error estimates and results. The band log is the
+// file with all bands of a job. A film can be built again from the log, for example without the
+// bands of a worker that returned wrong pixels. Damage of the log is found only when a film is
+// built again. A pass renders a range of samples in all rows. FilmThread::plan(job, samples)
+// announces a pass that ends at this number of samples.
 
 #include "coordinator/engine/film_thread.h"
 
@@ -106,6 +107,7 @@ class FilmThreadTest : public testing::Test {
     bands.seekp(static_cast<std::streamoff>(at));
     bands.put('!');
   }
+  /// Returns the pixels of a local render with `samples` samples per pixel.
   std::vector<Rgb> local(std::uint64_t samples) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
@@ -211,6 +213,8 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
+// While a film cannot take bands, add_later() remembers the rows of each band. Then retry() reads
+// the bands from the log and adds the rows.
 TEST_F(FilmThreadTest, RetryReadsTheRowsOfAddLaterFromTheLog) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());

@@ -31,7 +31,7 @@ JobId begin(TestFarm& farm, FrameNumber count) {
   spec.name = "walk";
   spec.settings = farm.settings();
   spec.stop = StopAtSamples{kSamples};
-  spec.fixed_seed = true;
+  spec.fixed_seed = true;  // so every frame has the pixels of the same local render
   std::vector<FrameScene> scenes;
   const DigestHex manifest = farm.send_package();
   for (FrameNumber frame = 1; frame <= count; ++frame) {
@@ -79,6 +79,7 @@ TEST(EngineFrames, EachFrameHasItsImageAfterARestartAndIsRenderedOnce) {
       EXPECT_EQ(done[frame.number], frame.job) << "a frame that was done must keep its job";
     }
   }
+  // The list of jobs has the sequence, but not the jobs of its frames.
   const auto jobs =
       blocking_call<std::vector<JobView>>([&](auto answer) { farm.engine().jobs(answer); });
   EXPECT_EQ(jobs.size(), 1u);

@@ -1,5 +1,6 @@
-// A disk that becomes full during a job, and a journal that cannot be written. The full disk is
-// simulated by a limit on the size of files, so its error is "File too large".
+// A disk that becomes full during a job, and a journal that cannot be written. The journal holds
+// the records from which a restarted coordinator restores its jobs. The full disk is simulated by a
+// limit on the size of files, so its error is "File too large".
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -141,7 +142,8 @@ TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalCannotBeWritten) {
 TEST_F(FullDiskTest, NothingIsAcknowledgedBeforeTheJournalHoldsIt) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   disk_->break_it();
-  // This is the last band: the job's state kFinishing must be journalled before the answer.
+  // The band completes the job. So the job's new state, kFinishing, must be in the journal before
+  // the band is acknowledged.
   EXPECT_EQ(farm_.put(job, rendered(0, 14)).status().code(), absl::StatusCode::kResourceExhausted);
   EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);
   disk_->mend();
@@ -195,6 +197,7 @@ TEST_F(FullDiskTest, TheReserveIsFreedForTheJournal) {
   JobSpec another = farm_.spec(StopAtSamples{.samples = 8});
   another.request_id = "another request id";
   ASSERT_TRUE(file_exists(farm_.folder() + "/reserve"));
+  // The journal behaves as on a disk that has no space until the reserve is deleted.
   disk_->refuse_while([file = farm_.folder() + "/reserve"] { return file_exists(file); });
   Box<absl::Status> said;
   farm_.engine().cancel(job, [&](const absl::StatusOr<JobView>& view) { said.put(view.status()); });
@@ -228,7 +231,7 @@ TEST(BrokenJournal, ARestartContinuesAfterAFailureOfAnyAppend) {
     farm.stop();
     disk->mend();
     start();
-    EXPECT_EQ(first.ok(), appends > 0);
+    EXPECT_EQ(first.ok(), appends > 0);  // the submit needs the first append
     const absl::StatusOr<JobId> job = farm.submit(spec);
     ASSERT_TRUE(job.ok()) << job.status();
     if (first.ok()) {

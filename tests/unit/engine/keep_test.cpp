@@ -24,7 +24,8 @@ class KeepTest : public ::testing::Test {
     spec_ = farm_.spec(StopAtSamples{.samples = 64});
   }
 
-  /// Submits all jobs without waiting for each, because each wait would include a disk access.
+  /// Submits `jobs` jobs and returns their ids. Waits only for the last answer, because a wait for
+  /// each answer would include a disk access.
   std::vector<JobId> submit(std::size_t jobs) {
     Box<std::vector<JobId>> box;
     std::vector<JobId> submitted;  // written by the engine's thread, which answers in order
@@ -87,6 +88,7 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   EXPECT_EQ(std::count_if(left.begin(), left.end(),
                           [](const JobView& job) { return is_final(job.state); }),
             5);
+  // The five final jobs that are left are the latest five of the 990.
   EXPECT_TRUE(std::all_of(left.begin(), left.end(),
                           [&](const JobView& job) { return job.id >= cancelled[985]; }));
 }

@@ -1,6 +1,7 @@
-// The queue of tasks for one thread (Mailbox), answers that are given exactly once, and the memory
-// budget for images. A Mailbox takes a function, which it calls after each batch of tasks, and the
-// longest time between two calls of this function.
+// Tests the queue of tasks for one thread (Mailbox), the callback that is called exactly once
+// (Answer), and the limit of the memory for images (MemoryBudget). A Mailbox takes a function,
+// which it calls after each batch of tasks, and the longest time between two calls of this
+// function. An Answer that is destroyed without a call gives the status UNAVAILABLE.
 
 #include "coordinator/engine/mailbox.h"
 
@@ -49,7 +50,7 @@ TEST(Mailbox, WaitingTasksAreDroppedAndAnsweredAtStop) {
   mailbox.post([a = answer()]() mutable { a(1); });
   mailbox.stop();
   EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable);
-  box.put(absl::OkStatus());
+  box.put(absl::OkStatus());  // stays in the box if the next task is not answered
   mailbox.post([a = answer()]() mutable { a(1); });
   EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable)
       << "a task that is posted after the stop must be answered, too";

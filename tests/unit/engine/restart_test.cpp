@@ -1,5 +1,6 @@
 // The coordinator is stopped or killed during a job. After its restart, acknowledged bands are not
-// rendered again unless they are damaged on disk, and the image is the same.
+// rendered again unless they are damaged on disk, and the image is the same. A lease is a band that
+// the coordinator gives to a worker to render.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -55,6 +56,7 @@ class Acknowledged {
   std::vector<Band> bands_ GUARDED_BY(mutex_);
 };
 
+/// Waits for the end of the job. Expects that its image has the pixels of a local render.
 void expect_local_image(TestFarm& farm, JobId job, std::uint64_t samples) {
   const JobView view = farm.wait_final(job);
   ASSERT_EQ(view.state, JobState::kDone) << view.reason;
@@ -126,7 +128,7 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   {
     std::fstream bands(farm.folder() + "/jobs/" + std::to_string(job) + "/bands",
                        std::ios::in | std::ios::out | std::ios::binary);
-    bands.seekp(300);
+    bands.seekp(300);  // in the first record
     bands.write("damage", 6);
   }
   ASSERT_TRUE(farm.start().ok());
@@ -225,7 +227,7 @@ TEST(Restart, AfterAKillNothingAcknowledgedIsLostOrLeasedAgain) {
   ASSERT_TRUE(farm.start().ok());
   FakeWorker three(farm.scene(), "three");
   three.join(farm.engine());
-  expect_local_image(farm, 1, kJobSamples);
+  expect_local_image(farm, /*job=*/1, kJobSamples);
   EXPECT_EQ(rendered_again(three.leased(), acknowledged), 0);
 }
 

@@ -30,14 +30,15 @@ class TestFarm {
   absl::StatusOr<JobId> submit(const JobSpec& spec);
   /// Sends the package and submits a job; ends the test if that fails.
   JobId begin(StopRule stop);
+  /// Returns the present state of the job.
   JobView view(JobId job);
   /// Waits until the job satisfies `fits`. `wait_final` waits until the job is final.
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
-  /// Sends a band. If `browser` is true, it is sent as a browser does, otherwise as a native worker
-  /// does. `work`: the hash of scene and settings (render/work_hash.h) that the worker reports; 0:
-  /// none.
+  /// Sends a band as a native worker does. If `browser` is true, sends the band as a browser does.
+  /// `work`: the hash of scene and settings (render/work_hash.h) that the worker reports; 0: none.
+  /// Returns what the engine did with the band.
   absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0,
                                   bool browser = false);
   std::string bands_file(JobId job) const {

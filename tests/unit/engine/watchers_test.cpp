@@ -53,6 +53,7 @@ TEST_F(WatchersTest, ThePresentStateIsDeliveredAtOnce) {
 TEST_F(WatchersTest, ChangesAreDeliveredAtMostTenTimesASecond) {
   watch();
   pass(1000, /*news=*/true);
+  // A thousand steps are ten seconds. The first state was delivered by watch(), before the steps.
   EXPECT_LE(told_.size(), 101u);
   EXPECT_GE(told_.size(), 80u);
   EXPECT_GE(told_.back()->samples_done, 980u);
@@ -106,7 +107,7 @@ TEST_F(WatchersTest, AWatcherThatReturnsFalseIsRemoved) {
   pass(50, /*news=*/true);
   EXPECT_GE(told_.size(), 5u);
   const std::size_t before = told_.size();
-  pass(11, /*news=*/true);
+  pass(11, /*news=*/true);  // long enough for one delivery, or two
   EXPECT_LE(told_.size() - before, 2u) << "only one watcher must be left";
 }
 
