@@ -10,6 +10,7 @@
 
 namespace bandsaw::test {
 
+/// Returns an image whose pixels are all `color`.
 inline Image uniform(std::uint32_t width, std::uint32_t height, const Rgb& color) {
   Image out{.width = width, .height = height, .pixels = {}};
   out.pixels.assign(std::size_t{width} * height, color);

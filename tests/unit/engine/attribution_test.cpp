@@ -1,5 +1,5 @@
 // Attribution: which worker rendered which rows of an image. The arguments of `add` are a job,
-// rows, the worker's process and the worker's name.
+// rows, the id of the worker's process and the worker's name.
 
 #include "coordinator/engine/attribution.h"
 

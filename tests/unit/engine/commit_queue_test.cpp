@@ -1,5 +1,5 @@
-// Effects of the scheduler, such as an answer to a user, wait until their journal records are
-// durable.
+// Effects of the scheduler, such as an answer to a user, wait until the journal has their records
+// on disk.
 
 #include "coordinator/engine/commit_queue.h"
 
@@ -12,10 +12,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An effect is done only after its records are durable. A completion is also called if the records
-/// could not be written. Its argument is the status of the journal. In these tests, effects and
-/// completions append their names to `done_`. A completion whose status is an error appends "!"
-/// before its name.
+/// An effect is done only after all records that were added before the effect are on disk. A
+/// completion is also called if the records could not be written. The argument of a completion is
+/// the status of the journal. In these tests, effects and completions append their names to
+/// `done_`. A completion whose status is an error appends "!" before its name.
 class CommitQueueTest : public testing::Test {
  protected:
   void effect(const std::string& name) {

@@ -28,8 +28,9 @@ struct Loaded {
 
 class GalleryFeatures : public testing::Test {
  protected:
-  // A copy of the gallery with maps of the globe, which are not in the repository. Small maps
-  // suffice: no feature depends on the number of texels.
+  // Copies the gallery and adds the maps of the globe, which are generated textures that the
+  // repository does not have. Small maps suffice, because no feature depends on the number of
+  // texels.
   void SetUp() override {
     fs::copy(BANDSAW_GALLERY, folder_.path(), fs::copy_options::recursive);
     constexpr std::uint32_t kRows = 64;

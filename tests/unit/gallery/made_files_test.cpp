@@ -1,4 +1,6 @@
-// The generated files in the repository are equal to the output of bandsaw-gallery.
+// The generated files in the repository are equal to the output of bandsaw-gallery. The file also
+// tests the lathe, which rotates a profile around the y axis and so makes the meshes of turned
+// objects.
 
 #include <gtest/gtest.h>
 
@@ -28,6 +30,7 @@ std::string kept(const std::string& name) {
   return bytes.str();
 }
 
+/// Returns the bytes as a string, to compare them with kept().
 std::string text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -135,6 +138,7 @@ TEST(Lathe, KeepsSharpEdges) {
   EXPECT_NEAR(cone.normals[18].y, std::sqrt(0.5), 1e-3);
 }
 
+// Four steps lead from each corner to the next, so the profile has 3 * 4 + 1 points.
 TEST(Lathe, ASmoothProfilePassesThroughItsCorners) {
   const std::vector<Vec2> corners = {{1, 0}, {2, 1}, {0.5, 3}, {0, 4}};
   const std::vector<Vec2> points = smooth_profile(corners, 4);

@@ -27,9 +27,9 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   EXPECT_EQ(open_edges(split), 0u);
 }
 
-// If corners at the same place move apart before the shutter closes, they leave a hole. Here one
-// triangle moves one of its corners away. Two edges of this triangle and two edges of its
-// neighbours are open.
+// If corners at the same place move apart before the shutter closes, they leave a hole. Here the
+// first triangle gets a corner of its own (number 8), which moves away. Then two edges of the
+// triangle and two edges of its neighbours are open.
 TEST(Closed, ADeformingMeshIsClosedIfItIsClosedAtShutterOpenAndClose) {
   Mesh cube = unit_cube();
   cube.positions_at_close = cube.positions;
@@ -50,7 +50,7 @@ TEST(Closed, CountsTheEdgesOfAHole) {
   EXPECT_EQ(open_edges(cube), 3u);
   cube.triangles.pop_back();
   EXPECT_EQ(open_edges(cube), 4u);
-  EXPECT_EQ(open_edges(test::grid(3)), 12u);
+  EXPECT_EQ(open_edges(test::grid(3)), 12u);  // the rim of a flat grid of 3 x 3 squares
 }
 
 TEST(Closed, AMeshWithAFlippedTriangleIsNotClosed) {

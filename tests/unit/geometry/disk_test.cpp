@@ -17,6 +17,7 @@ using test::Random;
 using test::Wide;
 using test::WideVec;
 
+/// Returns a disk with a radius from 1e-3 to 1e3, near the origin or far from it.
 Disk random_disk(Random& random) {
   return {std::pow(10, random.uniform(-2, 4)) * test::random_point(random),
           test::random_direction(random),
@@ -77,12 +78,13 @@ TEST(Disk, IsHitWithinItsRim) {
     const WideVec center(disk.center);
     const Wide slope = dot(d, n);
     if (std::abs(static_cast<double>(slope)) < 1e-6 * length(target - origin)) {
-      continue;  // nearly within the plane
+      continue;  // the ray is nearly in the plane of the disk
     }
     const Wide t = dot(center - o, n) / slope;
     const WideVec p = o + d * t - center;
     // Negative inside the rim, positive outside.
     const double out = static_cast<double>(dot(p, p)) / (disk.radius * disk.radius) - 1;
+    // Allowance for rounding errors, which grow with the distance of the disk from the origin.
     const double slack = 1e-9 * (1 + max_abs(disk.center) / disk.radius);
     if (t <= 0 || std::abs(out) < slack) {
       continue;

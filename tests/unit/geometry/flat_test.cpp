@@ -16,6 +16,7 @@ namespace {
 using test::Wide;
 using test::WideVec;
 
+/// Returns where the ray hits the shape; std::nullopt if it misses the shape.
 template <class Shape>
 std::optional<Crossing> hit(const Vec3& origin, const Vec3& direction, const Shape& shape) {
   Crossing crossing;
@@ -69,7 +70,8 @@ TEST(Triangle, SharedEdgesDoNotLeak) {
     const Vec3 a = shift + test::random_point(random);
     const Vec3 b = shift + test::random_point(random);
     const Vec3 c = shift + test::random_point(random);
-    const Vec3 d = a + b - c + 0.1 * test::random_point(random);  // across the edge from c
+    // Seen from c, the point d is beyond the edge from a to b.
+    const Vec3 d = a + b - c + 0.1 * test::random_point(random);
     const Vec3 origin = shift + 3 * test::random_direction(random);
     const Vec3 target = lerp(a, b, random.uniform(0.01, 0.99));
     const bool left = hit(origin, target - origin, Triangle{a, b, c, {}}).has_value();
@@ -107,6 +109,7 @@ struct Truth {
   Wide v;
 };
 
+/// Returns the parameters for the ray from `origin` and the quad `q`.
 Truth truth(const Vec3& origin, const Vec3& direction, const Quad& q) {
   const WideVec n = cross(WideVec(q.u), WideVec(q.v));
   const WideVec to = WideVec(q.corner) - origin;

@@ -1,6 +1,7 @@
-// Moving frames, which are coordinate systems that move between keys. A key is a motion at one
-// time. It is decomposed into scale, rotation and translation, which are interpolated. An id such
-// as X7 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Moving frames, which are coordinate systems that move between keys. A key is a transform at one
+// time. It is decomposed into scale, rotation and translation, which are interpolated. A Frame has
+// the members parent, placement (its transform in the parent, applied after the motion) and keys.
+// An id such as X7 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/geometry/frame.h"
 
@@ -89,7 +90,7 @@ TEST(Frames, DecomposeIntoScaleRotationAndTranslation) {
     ASSERT_TRUE(pose);
     const Transform again =
         translation(pose->translate) * rotation(pose->rotate) * scaling(pose->scale);
-    ASSERT_LE(difference(again, whole), 1e-13 * 100);
+    ASSERT_LE(difference(again, whole), 1e-13 * 100);  // the largest scale is 100
   }
   // A transform that shears, and a singular one, cannot be decomposed.
   EXPECT_FALSE(decompose(rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 30)));
@@ -121,8 +122,8 @@ TEST(Frames, MoveWithinFramesThatMove) {
   const std::vector<Frame> frames = {
       {kNoFrame, translation({0, 1, 0}), {Key(0, {}), Key(1, rotation({0, 0, 1}, 90))}},
       {FrameId{0}, translation({2, 0, 0}), {Key(0, {}), Key(1, translation({1, 0, 0}))}}};
-  // At half time, the origin of the inner frame is 2.5 away from (0, 1, 0), in a direction 45
-  // degrees up.
+  // At half time, the inner frame has moved from 2 to 2.5 along the x axis of the outer frame. The
+  // outer frame is rotated by 45 degrees and stands at (0, 1, 0).
   const double s = 2.5 * std::sqrt(0.5);
   EXPECT_LE(length(frame_at(frames, FrameId{1}, 0.5).point({}) - Vec3{s, 1 + s, 0}), 1e-15);
 }

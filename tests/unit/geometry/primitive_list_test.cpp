@@ -46,7 +46,8 @@ TEST(PrimitiveList, HasThePrimitivesOfTheMaterialsInOrder) {
     for (unsigned material = 0; material < 4; ++material) {
       wanted.push_back((bits >> material & 1) != 0);
     }
-    // Pairs of instance and primitive. Instance 0 is the loose shapes.
+    // Pairs of instance and primitive. The loose shapes, which are in no group, count as instance
+    // 0. So element i of `instances` counts as instance i + 1.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
     for (std::uint32_t i = 0; i < all.spheres.size(); ++i) {
       if (wanted[index_of(all.spheres[i].material)]) {

@@ -1,5 +1,5 @@
 // One cell of path guiding: a few balls from which much light comes. Tests the fit of the balls to
-// recorded light, and the sampling of the cones in which a surface sees them.
+// recorded light, and the sampling of the cones in which a surface sees the balls.
 
 #include "renderlib/guiding/guiding_cell.h"
 
@@ -101,7 +101,7 @@ TEST(GuidingCones, WithoutCellsGuidesNothing) {
 TEST(GuidingShares, TheShareOfPhotonsFollowsTheirLight) {
   GuidingCell paths = three_balls();
   GuidingCell photons = three_balls();
-  photons.moment = 100;
+  photons.moment = 100;  // a large second moment: without guiding, the photons' light is noisy
   const auto share_of_photons = [&](float irradiance) {
     photons.irradiance = irradiance;
     return shares_of({&paths, &photons}).photons;
@@ -138,7 +138,7 @@ TEST(FitCell, FindsASmallSource) {
     ASSERT_GT(cell.count, 0u);
     EXPECT_EQ(cell.share, 0.5f);
     EXPECT_GT(cell.moment, 100);       // the disk covers a thousandth of the hemisphere
-    EXPECT_LT(cell.guided_moment, 4);  // half of the directions hit it
+    EXPECT_LT(cell.guided_moment, 4);  // half of the directions are sampled towards the disk
     // Also from the edge of the cell, most guided directions hit the disk.
     const GuidingCones cones({.paths = &cell}, {0.5, 0.5, 0}, kUp);
     int hits = 0;
@@ -176,7 +176,7 @@ TEST(FitCell, LeavesUniformLightMostlyToTheBsdf) {
 
 TEST(FitCell, TooFewRecordsWithLightGiveNoBalls) {
   EXPECT_EQ(fit_cell({}).count, 0u);
-  EXPECT_EQ(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 7)).count, 0u);
+  EXPECT_EQ(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 7)).count, 0u);  // needs 8
   std::vector<GuidingRecord> dark = light_of_disk(GuidingRecord::Kind::kPath, 0.1, 100);
   for (GuidingRecord& record : dark) {
     record.weight = 0;

@@ -1,6 +1,7 @@
 // A cell of path guiding holds the directions from which light comes to a place. The cells of a
-// scene are in a tree over the position and the normal of surfaces. The tree is built from records
-// of light that paths or photons found.
+// scene are in trees over the position and the normal of surfaces (GuidingTree). A tree is built
+// from records of light that paths or photons found. A GuidingField has a tree of paths and a tree
+// of photons.
 
 #include "renderlib/guiding/guiding_field.h"
 
@@ -30,12 +31,12 @@ std::vector<GuidingRecord> two_sides(std::uint64_t count) {
 TEST(GuidingTree, SeparatesTheSidesOfASurface) {
   Pool pool(1);
   const GuidingTree tree(two_sides(4000), pool);
-  EXPECT_GT(tree.cells(), 40u);
+  EXPECT_GT(tree.cells(), 40u);  // a leaf has at most 48 of the 4,000 records
   for (const double side : {1.0, -1.0}) {
     const GuidingCell* cell = tree.find({5, 5, 0}, {0, 0, side});
     ASSERT_NE(cell, nullptr);
     ASSERT_GT(cell->count, 0u);
-    EXPECT_GT(cell->balls[0].center[2] * side, 3);
+    EXPECT_GT(cell->balls[0].center[2] * side, 3);  // the light is at the height 4 of this side
   }
   EXPECT_EQ(tree.find({5, 5, 0}, {1, 0, 0}), nullptr);
 }
@@ -47,6 +48,7 @@ TEST(GuidingTree, IsEmptyWithoutRecords) {
   EXPECT_EQ(tree.find({}, {0, 0, 1}), nullptr);
 }
 
+// A point cannot be divided further, and the records have two normals.
 TEST(GuidingTree, ManyRecordsAtOnePointGiveAtMostTwoCells) {
   std::vector<GuidingRecord> records = two_sides(1000);
   for (GuidingRecord& record : records) {
@@ -56,6 +58,7 @@ TEST(GuidingTree, ManyRecordsAtOnePointGiveAtMostTwoCells) {
   EXPECT_LE(GuidingTree(records, pool).cells(), 2u);
 }
 
+/// Returns true if the cells are equal, or both nullptr.
 bool same(const GuidingCell* a, const GuidingCell* b) {
   if (a == nullptr || b == nullptr) {
     return a == b;

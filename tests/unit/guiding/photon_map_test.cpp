@@ -1,5 +1,6 @@
-// The photon map: each photon spreads its power over a disk of its own, whose radius is small where
-// photons are dense. The sum over the disks at a point is the irradiance there.
+// The photon map: each photon spreads its power over a disk of its own. The radius of the disk is
+// small where photons are dense. The irradiance at a point is the sum over the disks that contain
+// the point.
 
 #include "renderlib/guiding/photon_map.h"
 
@@ -16,9 +17,9 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
-/// Returns 1: the whole disk of the photon lies on the surface. PhotonMap takes this function as
-/// its last argument, `share_on_surface`. The arguments before are the photons, the origin of their
-/// positions, a factor for all radii, a seed and the pool.
+/// Returns 1: the whole disk of the photon lies on the surface. The arguments of PhotonMap are the
+/// photons, the origin of their positions, a factor for all radii, a seed, the pool and such a
+/// function, which returns the share of a photon's disk that lies on the surface.
 double whole(const StoredPhoton&) { return 1; }
 
 /// Returns photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4. So 10/13 of
@@ -38,6 +39,7 @@ std::vector<StoredPhoton> on_floor(std::uint64_t count) {
   return photons;
 }
 
+/// Returns the irradiance in green at a point of a surface with this normal.
 double irradiance(const PhotonMap& map, const Vec3& position, const Vec3& normal = kAbove) {
   double sum = 0;
   map.visit(position, normal,
@@ -68,9 +70,9 @@ TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
     }
   }
   EXPECT_NEAR(sum * 1.2 * 1.2 / (kSteps * kSteps), 1, 1e-3);
-  EXPECT_EQ(density_at(photon, {1, 2, 3}, float3(-kAbove)), 0);
-  EXPECT_EQ(density_at(photon, {1, 2, 3.3}, float3(kAbove)), 0);
-  EXPECT_EQ(density_at(photon, {1.51, 2, 3}, float3(kAbove)), 0);
+  EXPECT_EQ(density_at(photon, {1, 2, 3}, float3(-kAbove)), 0);    // the back of the surface
+  EXPECT_EQ(density_at(photon, {1, 2, 3.3}, float3(kAbove)), 0);   // too far above the disk
+  EXPECT_EQ(density_at(photon, {1.51, 2, 3}, float3(kAbove)), 0);  // beyond the rim of the disk
 }
 
 TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {

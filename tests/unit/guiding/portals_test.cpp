@@ -26,8 +26,8 @@ TEST(Portals, SamplesDirectionsWithTheClaimedPdf) {
       {kWindow}, {kWindow, kSkylight}, {kWindow, kSkylight, kFarther}};
   for (const std::vector<Portal>& set : sets) {
     const Portals portals(set);
-    // The high bits of one number choose the portal, and its other bits are the u of the sample. So
-    // the test needs two numbers only.
+    // Portals::sample() takes three random numbers, but the test gives two. So the first 20 bits of
+    // `u` choose the portal, and the other bits of `u` are the u of the sample.
     test::expect_samples_match_density(
         [&](double u, double v) {
           const double steps = u * 0x1p20;

@@ -54,7 +54,7 @@ const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, /*
 
 TEST(ExrLayers, AreStoredBesideTheImageUnderTheirNames) {
   const auto channels = channels_of(encode_exr(kImage, /*half=*/false, kLayers).value());
-  ASSERT_EQ(channels.size(), 7u);
+  ASSERT_EQ(channels.size(), 7u);  // three of the image, three of the albedo, one of the depth
   EXPECT_THAT(channels.at("R").values, ElementsAre(1, 4));
   EXPECT_THAT(channels.at("B").values, ElementsAre(3, 6));
   EXPECT_THAT(channels.at("albedo.R").values, ElementsAre(0.25f, 1));

@@ -1,4 +1,5 @@
-// Reduction of an image by whole factors. Each pixel of the result is the mean of a cell of pixels.
+// Reduction of an image by whole factors, one for the width and one for the height. Each pixel of
+// the result is the mean of a cell of pixels. At the edges, cells may be smaller.
 
 #include "renderlib/image/shrink.h"
 
@@ -26,7 +27,7 @@ TEST(Shrink, PixelsAreMeansOfCellsAlsoAtTheEdges) {
   ASSERT_EQ(small.height, 2u);
   EXPECT_EQ(small.at(0, 0), (Rgb{3, 1, 0}));     // mean of 0, 1, 5 and 6
   EXPECT_EQ(small.at(2, 0), (Rgb{6.5f, 1, 0}));  // mean of 4 and 9
-  EXPECT_EQ(small.at(2, 1), (Rgb{14, 1, 0}));
+  EXPECT_EQ(small.at(2, 1), (Rgb{14, 1, 0}));    // 14 alone
 }
 
 TEST(Shrink, MayChangeTheWidthAlone) {

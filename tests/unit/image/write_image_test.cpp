@@ -38,6 +38,7 @@ std::string encoded(const Image& image, ImageFormat format) {
   return text(*bytes);
 }
 
+/// Returns the bytes of a file.
 std::string file(const std::string& path) {
   std::ostringstream out;
   out << std::ifstream(path, std::ios::binary).rdbuf();
@@ -81,6 +82,7 @@ TEST(WriteImage, P2_PpmHoldsRoundedSrgbCodesFromTheTopRowDown) {
   const std::string bytes = encoded(two_by_two(), ImageFormat::kPpm);
   const std::string header = "P6\n2 2\n255\n";
   ASSERT_EQ(bytes.size(), header.size() + 12);
+  // Values out of range are clamped: -1 becomes 0, and 2 and 3e38 become 255.
   const unsigned char expected[] = {0, 188, 255, 255, 0, 89, 0, 255, 0, 124, 149, 170};
   EXPECT_EQ(std::memcmp(bytes.data() + header.size(), expected, 12), 0);
   test::report_hard_case("P2", "PPM codes are rounded to the nearest");
