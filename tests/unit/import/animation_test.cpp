@@ -14,7 +14,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Returns a curve of single numbers. A cubic curve has three values for each key: the tangent
-/// before the key, the value at the key, and the tangent after the key.
+/// before the key, the value at the key, and the tangent after the key. The third argument of Curve
+/// is how many numbers a value has: 1, 3 (a vector) or 4 (a quaternion).
 Curve numbers(std::vector<double> times, std::vector<double> values, Interpolation interpolation) {
   return {std::move(times), std::move(values), 1, interpolation};
 }
@@ -93,6 +94,8 @@ TEST(Curve, ASmoothCurveMovesWhereATangentIsNotZero) {
   EXPECT_TRUE(curve.rests(4, 9));
 }
 
+// The translation has a curve, so its rest pose (1, 2, 3) is not used. The scale has no curve, so
+// it stays 2.
 TEST(NodeMotion, APropertyWithoutACurveKeepsItsRestPose) {
   NodeMotion motion;
   motion.translate = {1, 2, 3};

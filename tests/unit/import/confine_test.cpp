@@ -1,5 +1,6 @@
-// The confinement of the process that reads foreign files: no network, no other programs, limited
-// memory and time, and only two folders.
+// The confinement of the process that reads foreign files. The process has no network, cannot start
+// other programs, has limited memory and time, and may use only two folders, one for reading and
+// one for writing.
 
 #include "renderlib/import/files/confine.h"
 
@@ -31,9 +32,9 @@ struct Folders {
   TempDir other;
 };
 
-// Runs `act` in a confined child process, and returns its result. Returns 200 if the process could
-// not be confined, and 1000 + the number of the signal if a signal ended the process. The limits
-// are 8 GiB of memory, 60 s of CPU time and files of 1 MiB.
+// Runs `act` in a confined child process, and returns the result of `act`. Returns 200 if the
+// process could not be confined, and 1000 + the number of the signal if a signal ended the process.
+// The limits are 8 GiB of memory, 60 s of CPU time and files of 1 MiB.
 int confined(const Folders& folders, const std::function<int()>& act) {
   const pid_t pid = fork();
   if (pid == 0) {

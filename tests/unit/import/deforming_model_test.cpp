@@ -126,7 +126,8 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
       Json::array({{{"POSITION", file.add<float>({0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3)}}});
   animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
   // The exposure lasts from 0.25 s to 0.5 s. The quad is turned by 22.5 degrees when the exposure
-  // begins and by 45 degrees when it ends.
+  // begins and by 45 degrees when the exposure ends. The morph target lifts the first vertex by 8
+  // in a second, so by 2 when the exposure begins and by 4 when it ends.
   const ImportedScene imported = read(file, exposure(1, 4, 1));
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));
@@ -146,7 +147,9 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
   expect_turned(mesh.positions_at_close, mesh.normals_at_close, 45, 4);
 }
 
-// Three nodes have the same mesh. The weights of the first and of the last node are animated.
+// Three nodes have the same mesh. The weight of the first node rises from 0 to 1 in a second, the
+// weight of the second node is 0, and the weight of the third node falls from 1 to 0. The exposure
+// lasts from 0.25 s to 0.5 s.
 TEST_F(DeformingModel, EachNodeOfAMeshHasItsOwnWeights) {
   GltfWriter file = quad(0, 1, 0, 1);
   file.primitive()["targets"] =
@@ -179,7 +182,8 @@ TEST_F(DeformingModel, AMeshWhosePoseRestsDoesNotDeform) {
   EXPECT_EQ(later.info.warnings, std::vector<std::string>());
 }
 
-// The weight of a morph target makes one vertex infinite at the end of the exposure only.
+// A morph target makes one vertex infinite when the exposure ends, but not when the exposure
+// begins.
 TEST_F(DeformingModel, TrianglesThatAreNotFiniteAtEitherEndAreLeftOut) {
   GltfWriter file = quad(0, 1, 0, 1);
   file.primitive()["targets"] =

@@ -1,7 +1,7 @@
 // Attributes of every type that glTF 2.0 and KHR_mesh_quantization allow are converted to the
 // numbers that they represent, and a damaged file gives one clear error. The arguments of
-// GltfWriter::add() are the values, the numbers of each element, whether integers are normalised,
-// and how many unused numbers follow each element.
+// GltfWriter::add() are the values, how many numbers an element has, whether integers are
+// normalised, and how many unused numbers follow each element.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -152,8 +152,8 @@ TEST_F(GltfAccessors, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
 }
 
 // Joint 1 lifts by 2, and joint 0 does not move. The second vertex follows joint 1 with the weight
-// 51, which is 1/5 of a byte's range, and the other vertices follow joint 0 alone. A joint of
-// weight 0 may have any index.
+// 51, which is 1/5 of a byte's range, so the vertex is lifted by 0.4. The first and the third
+// vertex follow joint 0 alone. A joint of weight 0 may have any index.
 TEST_F(GltfAccessors, SkinsMayHaveWeightsOfBytes) {
   GltfWriter file;
   file.attributes() = {

@@ -29,6 +29,7 @@ using test::with_meshopt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+/// Imports the file, and expects no error and no warning.
 ImportedScene read(GltfWriter file, const TempDir& folder) {
   auto imported = file.import(folder);
   EXPECT_TRUE(imported.ok()) << imported.status();
@@ -219,6 +220,7 @@ TEST(Meshopt, TheErrorOfADamagedViewNamesTheFault) {
     return std::string(file.import(folder).status().message());
   };
   const std::string place = "m.gltf: cannot be read: bufferViews[0].EXT_meshopt_compression";
+  // View 0 has the positions: 169 vertices of 12 bytes, 2028 bytes. View 3 has the indices.
   EXPECT_THAT(message("mode", "OTHER"), HasSubstr(place + ": mode is \"OTHER\""));
   EXPECT_THAT(message("filter", "COLOR"), HasSubstr(place + ": filter is \"COLOR\""));
   EXPECT_THAT(message("filter", "QUATERNION"), HasSubstr("does not go with this mode"));
@@ -253,7 +255,7 @@ struct Vertex {
   std::array<float, 3> normal;
 };
 /// Returns the vertices of a square of n x n cells, sorted by their uvs, because the encoding
-/// "edgebreaker" renumbers them.
+/// "edgebreaker" renumbers vertices.
 std::vector<Vertex> sorted_vertices(const Mesh& mesh, int n) {
   std::vector<Vertex> all;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

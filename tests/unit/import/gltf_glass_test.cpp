@@ -142,9 +142,9 @@ TEST(GltfVolume, AMeshWithoutAThicknessIsAThinPane) {
   EXPECT_TRUE(imported.scene.media.media.empty());
 }
 
-// The base's normal map has scale 0 and uses the first set of uvs, so it has no effect. The coat's
-// map uses the second set, which is rotated by a quarter turn. So the picture equals the one
-// without the base's map.
+// The base's normal map uses the first set of uvs. Its scale is 0, so the map has no effect. The
+// coat's normal map uses the second set, which is rotated by a quarter turn. So the picture must be
+// the same with and without the base's map.
 TEST(GltfCoat, ItsNormalMapUsesItsOwnUvs) {
   const TempDir folder;
   write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");
@@ -153,6 +153,8 @@ TEST(GltfCoat, ItsNormalMapUsesItsOwnUvs) {
   for (std::size_t i = 0; i < square.uvs.size(); i += 2) {
     turned.insert(turned.end(), {square.uvs[i + 1], -square.uvs[i]});
   }
+  // Returns the picture. `base_map`: the base has its normal map. `coat_set`: number of the set of
+  // uvs that the coat's normal map uses.
   const auto seen = [&](bool base_map, int coat_set) {
     GltfWriter file = square.plain();
     file.attributes()["TEXCOORD_1"] = file.add(turned, 2);

@@ -37,7 +37,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return bytes;
 }
 
-/// A file with one mesh of one primitive at one node; tests add everything else.
+/// A glTF file with one mesh of one primitive at one node. Tests add everything else.
 class GltfWriter {
  public:
   GltfWriter() {
@@ -112,6 +112,7 @@ class GltfWriter {
     const auto number = [](std::size_t v) {
       return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(v)});
     };
+    // 28: the header of the file has 12 bytes, and the headers of the two chunks have 8 bytes each.
     return "glTF" + number(2) + number(28 + json.size() + binary.size()) + number(json.size()) +
            "JSON" + json + number(binary.size()) + std::string("BIN\0", 4) + binary;
   }

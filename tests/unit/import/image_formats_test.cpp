@@ -26,6 +26,7 @@ std::string bytes(std::initializer_list<int> values) {
   return out;
 }
 
+/// Returns the values of all channels of all texels, which have 8 bits.
 std::vector<int> codes(const ImageTexture& image) {
   std::vector<int> out;
   for (const std::byte b : image.texels) {
@@ -34,6 +35,7 @@ std::vector<int> codes(const ImageTexture& image) {
   return out;
 }
 
+/// Decodes the bytes of a file, and expects no error and no warning.
 ImageTexture decoded(const std::string& file, Gray gray = Gray::kKept) {
   std::vector<std::string> warnings;
   auto image = decode_image(file, warnings, gray);
@@ -213,8 +215,8 @@ TEST(ImageFormats, AlphaOfATgaIsRead) {
   EXPECT_FALSE(image_has_alpha("P5 1 1 255\n7"));
 }
 
-// PNG: the chunk tRNS names the one colour whose alpha is 0. The pixels are a stored block of zlib;
-// the last four bytes of each chunk are its checksum.
+// The chunk tRNS of a PNG file names the one colour whose alpha is 0. The pixels are an
+// uncompressed block of zlib. The last four bytes of each chunk are the checksum of the chunk.
 TEST(ImageFormats, APngMayNameOneTransparentColour) {
   const std::string signature = "\x89PNG\r\n\x1a\n";
   const std::string end = bytes({0, 0, 0, 0}) + "IEND" + bytes({0xae, 0x42, 0x60, 0x82});

@@ -81,7 +81,7 @@ TEST(DecodeImage, ReadsRadianceAsLinearFloats) {
   EXPECT_EQ(texel[2], 0.5f);
 }
 
-// stb_image alone does not terminate for some of these files.
+// Without further checks, the decoder stb_image does not terminate for some of these files.
 TEST(DecodeImage, ATruncatedRadianceFileIsAnError) {
   const std::string whole = radiance(64, 8);
   std::vector<std::string> warnings;
@@ -117,8 +117,9 @@ TEST(DecodeImage, APnmFileOf16BitsIsAnError) {
   }
 }
 
-// For such files, stb_image alone leaves the missing pixels uninitialized. If the header is cut, it
-// does not terminate.
+// Without further checks, the decoder stb_image leaves the missing pixels of such files
+// uninitialized. If the header is cut, the decoder does not terminate. The last three bytes of the
+// BMP file are padding and may be missing, so all tested files lack at least four bytes.
 TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
   std::string runs;
   for (int i = 0; i < 50; ++i) {

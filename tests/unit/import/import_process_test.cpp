@@ -1,6 +1,6 @@
 // The import of a scene in a separate, confined process gives the same bytes as the import by the
-// library. If anything goes wrong, it gives one clear error. An ImportSession imports several
-// frames of a scene by one process.
+// library. If anything goes wrong, the import gives one clear error. An ImportSession imports
+// several frames of a scene by one process.
 
 #include "coordinator/cli/scene/import_process.h"
 
@@ -33,6 +33,7 @@ ImportLimits limits() {
   return limits;
 }
 
+/// Returns the number of files and folders in a folder.
 std::size_t entries(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
@@ -61,6 +62,7 @@ TEST(ImportProcess, TheTimeLimitGrowsWithTheFilesOfTheScene) {
   std::filesystem::create_directory(folder / "meshes");
   write_text(folder, "meshes/large.glb", "");
   std::filesystem::resize_file(folder / "meshes/large.glb", 2'000'000'000);  // a hole in the file
+  // Each 4 MB in the folder of the scene add a second to the 120 seconds.
   EXPECT_NEAR(import_timeout_s(scene, 120), 620, 0.001);
   EXPECT_EQ(import_timeout_s(folder / "missing/scene.json", 120), 120);
 }

@@ -209,8 +209,8 @@ TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground)
       HasSubstr("x.hdr: is not an image"));
 }
 
-// L9 is the id of this hard case in tests/hard_cases/cases.txt. Negative and NaN texels become 0,
-// and infinite or too large texels become the largest valid value.
+// L9 is the id of a case in tests/hard_cases/cases.txt. Negative and NaN texels become 0, and
+// infinite or too large texels become the largest valid value, which is 7 here.
 TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float values[] = {1, -1, std::nanf(""), 7, kInf, 2e30f, -kInf, 0};
@@ -273,6 +273,8 @@ TEST(ModelLights, GltfLightsHaveTheirUnitsAndStandAtTheirNodes) {
       << "a model with lights must have no default sky";
 }
 
+// The point light is at two nodes, which have the same name, "b". A third node of this name has a
+// mesh.
 TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
   const TempDir folder;
   std::string text = gltf_with_lights();
@@ -282,7 +284,7 @@ TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
   };
   replace(R"({"light": 2})", R"({"light": 1})");
   replace(R"("name": "c")", R"("name": "b")");
-  replace(R"("name": "t")", R"("name": "b")");  // a node of this name without a light
+  replace(R"("name": "t")", R"("name": "b")");
   const auto imported = import_scene(write_text(folder, "m.gltf", text));
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto& lights = imported->scene.lights;

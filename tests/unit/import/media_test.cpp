@@ -30,8 +30,8 @@ const std::string kCube =
     "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\n";
 const std::string kLid = "f 5 6 8 7\n";
 
-/// Imports a scene file of kHead and `text`. The models closed.obj, open.obj and turned.obj are in
-/// its folder.
+/// Imports a scene file of kHead and `text`. The folder of the scene has the models closed.obj,
+/// open.obj and turned.obj.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "closed.obj", kCube + kLid);
@@ -75,7 +75,7 @@ model { file: "closed.obj" interior: "smoke" translate: [9, 0, 0] boundary_only:
   ASSERT_EQ(boundaries.spheres.size(), 2u);
   EXPECT_EQ(boundaries.spheres[0].center, (Vec3{1, 2, 3}));
   EXPECT_EQ(medium_in(boundaries.spheres[0].material), MediumId{1});
-  ASSERT_EQ(boundaries.instances.size(), 4u);
+  ASSERT_EQ(boundaries.instances.size(), 4u);  // two boxes and two models
   EXPECT_EQ(boundaries.instances[0].to_world.point({1, 1, 1}), (Vec3{2, 4, 3}));
   EXPECT_EQ(boundaries.meshes.size(), 2u);  // the cube of all boxes, and the file's mesh
 }
@@ -88,7 +88,8 @@ TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsASurfaceAndABoundary) {
   EXPECT_EQ(imported->scene.media.boundaries.instances.size(), 1u);
 }
 
-// The triangles of the boundary are turned over, and those of the visible mesh are not.
+// The triangles of the boundary are turned over. The triangles of the visible mesh stay as they
+// are.
 TEST(MediaFile, AMeshThatIsInsideOutIsInverted) {
   const auto imported = import_text(R"(model { file: "turned.obj" interior: "milk" })");
   ASSERT_TRUE(imported.ok()) << imported.status();

@@ -155,7 +155,8 @@ TEST(MitsubaSerialized, DamageIsNamed) {
   EXPECT_THAT(message(read_serialized("\x1c\x04", 0, false)), HasSubstr("ends too early"));
   EXPECT_THAT(message(read_serialized("OBJ file", 0, false)), HasSubstr("is not a *.serialized"));
   const std::string whole = serialized(3);
-  // The last 18 bytes are the end of the compressed data, their checksum and the table of meshes.
+  // Mesh 0 may be readable without the last 18 bytes, which are the end of the compressed data,
+  // their checksum and the table of meshes.
   for (std::size_t size = 0; size + 18 < whole.size(); ++size) {
     EXPECT_FALSE(read_serialized(whole.substr(0, size), 0, false).ok()) << size;
   }

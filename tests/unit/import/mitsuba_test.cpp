@@ -1,5 +1,5 @@
-// Scene files of the renderer Mitsuba (XML): how they are converted to scene files of our own
-// format, what is left out with a warning, and what is refused.
+// Scene files of the renderer Mitsuba (XML): how they are converted to this renderer's own
+// scene files, what is left out with a warning, and what is refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -36,17 +36,20 @@ class MitsubaScene : public ::testing::Test {
     return convert_file("<scene version=\"3.0.0\">\n" + kSensor + content + "\n</scene>\n",
                         std::move(parameters));
   }
+  /// Converts a scene file with this text.
   absl::StatusOr<ConvertedScene> convert_file(const std::string& text,
                                               std::map<std::string, std::string> parameters = {}) {
     const std::string path = write_text(folder_, "s.xml", text);
     const auto folder = SceneFolder::of(path);
     return convert_mitsuba({folder->path() + "/s.xml", "s.xml", *folder, std::move(parameters)});
   }
+  /// Returns the converted scene. This and the next two functions take the content for convert().
   scene::Scene scene(const std::string& content) {
     const auto converted = convert(content);
     EXPECT_TRUE(converted.ok()) << converted.status();
     return converted.ok() ? converted->scene : scene::Scene();
   }
+  /// Returns the message of the error; an empty text if there is none.
   std::string error(const std::string& content) {
     return std::string(convert(content).status().message());
   }
@@ -131,8 +134,9 @@ TEST_F(MitsubaScene, MaxDepthIsOneLessThanInMitsuba) {
             1u);
 }
 
-// With free_passage, light that passes the pane does not count towards max_depth. The integrators
-// `volpath` and `volpathmis` do not count it, and `path` does.
+// With free_passage, the passage of light through a pane does not count towards max_depth. In
+// Mitsuba, the integrator `path` counts such a passage, and the integrators `volpath` and
+// `volpathmis` do not.
 TEST_F(MitsubaScene, TheVolumetricPathTracerDoesNotCountThinPanes) {
   const auto is_free = [&](const std::string& integrator) {
     return scene("<integrator type=\"" + integrator + "\"/>" +
@@ -261,6 +265,7 @@ TEST_F(MitsubaScene, FieldsOfMaterialsAreConverted) {
     return from.material_size() > 0 ? from.material(from.material_size() - 1) : scene::Material();
   };
   const auto glass = material("<bsdf type=\"dielectric\"/>");
+  // By default, the inside is glass and the outside is air, which has the index 1.000277.
   EXPECT_NEAR(glass.dielectric().index_of_refraction(), 1.5046 / 1.000277, 1e-12);
   EXPECT_FALSE(glass.one_sided());
   const auto plastic = material(
@@ -338,8 +343,8 @@ TEST(MitsubaMetals, HaveTheirPublishedColours) {
     const auto metal = mitsuba::metal_of(published.name);
     ASSERT_TRUE(metal.ok()) << metal.status();
     const auto expect_near = [&](float ours, float theirs) {
-      // Our tables have one value for every 30 nm. So they blur the sharp edges in the spectra of
-      // copper and gold.
+      // The tables of this renderer have one value for every 30 nm. So they blur the sharp edges in
+      // the spectra of copper and gold.
       EXPECT_NEAR(ours, theirs, std::max(0.015f * theirs, 0.02f)) << published.name;
     };
     for (const auto& [ours, theirs] :
@@ -377,6 +382,7 @@ TEST_F(MitsubaScene, ElementsWithoutACounterpartAreNamedOnce) {
               ElementsAre(HasSubstr("s.xml:3: \"no.obj\" is missing")));
 }
 
+// By default, the colours of a checkerboard are 0.4 and 0.2.
 TEST_F(MitsubaScene, ColoursOfACheckerboardAreExchangedWhereVIsReversed) {
   const std::string checker =
       "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\">"
@@ -415,6 +421,8 @@ TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
   EXPECT_THAT(image.uv_offset(), ElementsAre(0.5, 0.75));
 }
 
+// By default, the inner angle of a spot light is 3/4 of the cutoff angle. A projector gets the
+// factor pi, so that a white surface perpendicular to its light shows the image.
 TEST_F(MitsubaScene, FieldsOfLightsAreConverted) {
   const scene::Scene from = scene(R"(
 <emitter type="point"><point name="position" x="1" y="2" z="3"/>
@@ -441,8 +449,8 @@ TEST_F(MitsubaScene, AreaLightsEmitToOneSide) {
   EXPECT_TRUE(from.material(0).emission_one_sided());
 }
 
-/// In Mitsuba's environment maps a row of pixels is a circle of latitude. In ours it is a band of
-/// latitudes. The conversion must not blur the image.
+/// In an environment map of Mitsuba, a row of pixels is a circle of latitude. In an environment map
+/// of this renderer, a row is a band of latitudes. The conversion must not blur the image.
 TEST_F(MitsubaScene, EnvironmentsStaySharp) {
   const Image rows{1, 3, {gray(0), gray(1), gray(0)}};
   const auto bytes = encode_image(rows, ImageFormat::kExr);
@@ -462,6 +470,7 @@ TEST_F(MitsubaScene, EnvironmentsStaySharp) {
 }
 
 TEST_F(MitsubaScene, RectanglesKeepTheirNormal) {
+  // Returns the z of u x v: 4, the area of the rectangle, if the normal is +z, and -4 if it is -z.
   const auto normal = [&](const std::string& inside) {
     const scene::Quad quad = scene(rectangle(inside)).shape(0).quad();
     return quad.u(0) * quad.v(1) - quad.u(1) * quad.v(0);
@@ -501,7 +510,7 @@ TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
 }
 
 TEST_F(MitsubaScene, GridsOfAbsorptionAreRefused) {
-  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  write_text(folder_, "smoke.vol", "VOL");  // only the name of the file is used
   EXPECT_THAT(error("<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_a\" "
                     "type=\"gridvolume\"><string name=\"filename\" value=\"smoke.vol\"/></volume>"
                     "</medium><shape type=\"sphere\"><bsdf type=\"null\"/>"
@@ -511,7 +520,7 @@ TEST_F(MitsubaScene, GridsOfAbsorptionAreRefused) {
 
 /// In Mitsuba, the outermost values of a grid continue to the faces of the grid.
 TEST_F(MitsubaScene, GridsAreClampedAtTheirFaces) {
-  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  write_text(folder_, "smoke.vol", "VOL");  // only the name of the file is used
   const auto text = [](const std::string& wrap) {
     return "<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_t\" "
            "type=\"gridvolume\">"
@@ -531,7 +540,7 @@ TEST_F(MitsubaScene, GridsAreClampedAtTheirFaces) {
 /// here, and its medium lies in the space of the instance. So the product of the instance's matrix
 /// and the grid's matrix, which places the grid in the world, must be the identity.
 TEST_F(MitsubaScene, GridsInSpheresThatAreInstancesStayInTheirPlace) {
-  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  write_text(folder_, "smoke.vol", "VOL");  // only the name of the file is used
   const auto grid_to_world = [&](const std::string& scale, const std::string& bsdf) {
     const scene::Scene from = scene(
         "<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_t\" "
@@ -562,7 +571,7 @@ TEST_F(MitsubaScene, GridsInSpheresThatAreInstancesStayInTheirPlace) {
   }
 }
 
-/// import_scene reads a Mitsuba file too, also in strict mode.
+/// import_scene reads a Mitsuba file too, also in strict mode, in which a warning is an error.
 TEST_F(MitsubaScene, IsImportedAsASceneFile) {
   write_text(folder_, "s.xml",
              "<scene version=\"3.0.0\">\n" + kSensor +

@@ -132,8 +132,8 @@ TEST_F(ModelCameraNames, ASceneFileSetsTheWindowOfAModelsCameraAndMirrorsIt) {
               HasSubstr("camera.window: must be 4 numbers"));
 }
 
-/// Imports a COLLADA file with a triangle, and a camera with these optics 5 units in front of it. A
-/// unit is half a metre.
+/// Imports a COLLADA file with a triangle and a camera. `optics` is the XML of the camera's lens.
+/// The camera is 5 units in front of the triangle. A unit is half a metre.
 absl::StatusOr<ImportedScene> import_collada(const std::string& optics) {
   const TempDir folder;
   return import_scene(write_text(folder, "m.dae",

@@ -24,6 +24,8 @@ const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 0 1
 
 class Obj : public ::testing::Test {
  protected:
+  /// Imports an OBJ file of a triangle. `material`: the lines of the triangle's material in the MTL
+  /// file.
   ImportedScene read(const std::string& material) {
     write_text(folder_, "m.mtl", "newmtl a\n" + material);
     auto imported = import_scene(
@@ -32,6 +34,7 @@ class Obj : public ::testing::Test {
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
   Material material(const std::string& text) { return read(text).scene.materials.at(0); }
+  /// Returns the material, and expects that it is of the kind MetallicRoughness.
   MetallicRoughness layers(const std::string& text) {
     const Material whole = material(text);
     const auto* found = std::get_if<MetallicRoughness>(&whole.kind);
@@ -124,6 +127,7 @@ TEST_F(Obj, AWeakEmissionIsAddedToTheReflection) {
   EXPECT_FALSE(m.emission.one_sided);
 }
 
+/// Returns a PPM file of one texel.
 std::string ppm_of(int red, int green, int blue) {
   std::string file = "P6 1 1 255\n";
   for (const int code : {red, green, blue}) {
@@ -229,6 +233,8 @@ TEST_F(Obj, VertexColoursAreIgnoredIfTheSceneReplacesTheMaterial) {
   EXPECT_THAT(imported->scene.geometry.meshes[0].colors, IsEmpty());
 }
 
+/// Returns a PLY file of a triangle. `properties`: declarations of the vertices' properties besides
+/// the position. `vertices`: a line for each of the three vertices.
 std::string ply(const std::string& properties, const std::string& vertices) {
   return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
          "property float z\n" +
@@ -325,7 +331,7 @@ TEST(Fbx, UpAxisIsConverted) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "needs the package assimp-testmodels";
   }
-  // The header states that z is up, so the box stands on z = 0.
+  // In the file z is up, and the box stands on z = 0. In the imported scene y is up.
   const auto imported = import_scene(test_model("FBX/embedded_ascii/box.FBX"));
   ASSERT_TRUE(imported.ok()) << imported.status();
   double lowest = 1e9;
@@ -401,7 +407,8 @@ absl::StatusOr<ImportedScene> import_fbx_light(const std::string& properties) {
   return import_scene(write_text(folder, "l.fbx", fbx_light(properties)));
 }
 
-// FBX states the angles across the whole cones.
+// FBX states the full angle of a cone, from edge to edge. cos_inner and cos_outer are the cosines
+// of half the angles, 30 and 45 degrees.
 TEST(Fbx, TheConesOfASpotLightAreHalfItsAngles) {
   const auto imported = import_fbx_light(R"(
 			P: "LightType", "enum", "", "",2

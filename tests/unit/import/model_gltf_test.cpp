@@ -22,6 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+/// Returns the first material, which MUST be of the kind MetallicRoughness.
 const MetallicRoughness& layers(const ImportedScene& imported) {
   return std::get<MetallicRoughness>(imported.scene.materials.at(0).kind);
 }
@@ -31,6 +32,7 @@ const ImageTexture& image(const ImportedScene& imported, TextureId id) {
 
 class Gltf : public ::testing::Test {
  protected:
+  /// Imports the file, and expects no error. The file may use the image a.ppm.
   ImportedScene read(const GltfTriangle& file) {
     write_text(folder_, "a.ppm", test::small_ppm());
     auto imported = import_scene(file.write(folder_, "t.gltf"));
@@ -40,7 +42,8 @@ class Gltf : public ::testing::Test {
   TempDir folder_;
 };
 
-// The index 1.5 has an F0 of 0.04. A quarter of that is the F0 of the index 1.1 / 0.9.
+// F0 is the reflectance at normal incidence. The default index 1.5 has an F0 of 0.04, and the index
+// 1.1 / 0.9 has a quarter of it, 0.01.
 TEST_F(Gltf, SpecularBecomesTheIndexWithTheSameReflectance) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_specular"],)";
@@ -129,7 +132,7 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
     {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.5707963267948966, "scale": [0.5, 0.5]}}}}})";
   const ImportedScene imported = read(file);
   const ImageTexture& texture = image(imported, layers(imported).base_color.texture);
-  // (0, 0) of glTF, its top left corner, is (0, 1) here.
+  // The top left corner of the image is (0, 0) in glTF and (0, 1) in this renderer.
   const auto at = [&](double u, double v) {
     const Vec2 uv = texture.uv_transform({u, 1 - v});
     return Vec3{uv.x, 1 - uv.y, 0};
@@ -140,8 +143,8 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
   EXPECT_NEAR(length(at(1, 1) - Vec3{0.5, 0.5, 0}), 0, 1e-12);
 }
 
-// Assimp may number materials in the order in which nodes use them. In this test that order differs
-// from the order of the file.
+// Assimp may number materials in the order in which nodes use them. In this test, the order of use
+// differs from the order in the file.
 TEST_F(Gltf, EachMaterialHasItsOwnExtensionsWhateverTheOrderOfUse) {
   write_text(folder_, "o.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0}));
   const auto imported = import_scene(write_text(folder_, "o.gltf", R"({"asset": {"version": "2.0"},
@@ -389,8 +392,9 @@ TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
   EXPECT_THAT(meshes[1].positions[0], ElementsAre(0, 0, 7));
 }
 
-// Four nodes share one mesh. The first two have a skin each, and the third has none. The fourth has
-// the first skin again. It would place the same triangle a second time, so it is left out.
+// Four nodes share one mesh. The first and the second node have a skin each, and the third node has
+// none. The fourth node has the same skin as the first, and would place the same triangle a second
+// time. So the fourth node is left out.
 TEST_F(Gltf, EachSkinPosesTheMeshThatItShares) {
   GltfWriter file;
   file.add_skinned_triangle();
