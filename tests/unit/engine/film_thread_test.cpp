@@ -195,6 +195,8 @@ TEST_F(FilmThreadTest, AnotherBandAtTheSameOffsetIsDamage) {
   EXPECT_EQ(scheduler_.damaged[0].band.rows, (RowRange{4, 8}));
 }
 
+// The first request finds that the log is missing. The lost band is then added again, and a second
+// request makes the image.
 TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());

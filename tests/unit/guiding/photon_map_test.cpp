@@ -157,7 +157,7 @@ TEST(PhotonMap, DividesByTheShareOnTheSurface) {
   Pool pool(3);
   const PhotonMap map(on_floor(3000), {}, 1, 0, pool,
                       [](const StoredPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
-  EXPECT_NEAR(totals_of(map).power, 12'000, 1);
+  EXPECT_NEAR(totals_of(map).power, 12'000, 1);  // 3,000 photons of power 1, divided by 0.25
 }
 
 TEST(PhotonMap, IsTheSameForAnyNumberOfThreads) {
