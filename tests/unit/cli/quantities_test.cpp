@@ -38,7 +38,7 @@ TEST(Quantities, RowsAreAHalfOpenRange) {
   }
 }
 
-TEST(Quantities, ErrorsHaveTheNameTheRangeAndTheValue) {
+TEST(Quantities, AnErrorNamesTheOptionTheRangeAndTheValue) {
   EXPECT_EQ(parse_whole("--depth", "x", 1, 9).status().message(),
             "--depth: must be a whole number in [1, 9], is 'x'");
   EXPECT_EQ(parse_whole("--depth", "9", 1, 9).value(), 9u);

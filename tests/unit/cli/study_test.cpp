@@ -59,7 +59,7 @@ std::shared_ptr<const Scene> rare_light() {
   return maker.build();
 }
 
-TEST(Study, SamplesArePowersOfFourUpToTheMaximum) {
+TEST(Study, SamplesArePowersOfFourAndTheMaximum) {
   EXPECT_THAT(study_samples(64), ElementsAre(1, 4, 16, 64));
   EXPECT_THAT(study_samples(100), ElementsAre(1, 4, 16, 64, 100));
 }

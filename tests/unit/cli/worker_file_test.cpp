@@ -58,7 +58,7 @@ TEST(WorkerProgram, IsRefusedIfItIsCutOffAnywhere) {
 }
 
 // Any header gives a result or an error, and nothing beyond the file is read.
-TEST(WorkerProgram, WrongHeaderBytesAreHandled) {
+TEST(WorkerProgram, AWrongHeaderGivesAMachineOrAnError) {
   const std::string bytes = worker_file(EM_AARCH64, fitting_mark());
   for (std::size_t at = 0; at < sizeof(Elf64_Ehdr) + sizeof(Elf64_Phdr); ++at) {
     for (const char wrong : {'\x00', '\x01', '\x7f', '\x80', '\xff'}) {

@@ -61,7 +61,7 @@ TEST_F(CommitQueueTest, AFailedJournalFailsCompletionsAndKeepsEffectsInOrder) {
   EXPECT_EQ(disk_->records().size(), 1u);
 }
 
-TEST_F(CommitQueueTest, AdditionsOfAnEffectWaitForTheNextFlush) {
+TEST_F(CommitQueueTest, RecordsAndEffectsThatAnEffectAddsWaitForTheNextFlush) {
   commit_queue_.effect([this] {
     commit_queue_.record(record::WorkerLeft{"a"});
     effect("late");

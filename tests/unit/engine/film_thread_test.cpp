@@ -217,7 +217,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
 
 // While a film cannot take bands, add_later() remembers the rows of each band. Then retry() reads
 // the bands from the log and adds the rows.
-TEST_F(FilmThreadTest, RetryReadsTheRowsOfAddLaterFromTheLog) {
+TEST_F(FilmThreadTest, RetryAddsTheRowsOfAddLaterFromTheLog) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   thread_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});

@@ -72,7 +72,7 @@ class KeepTest : public ::testing::Test {
   int requests_ = 0;
 };
 
-TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
+TEST_F(KeepTest, TheThousandthJobRemovesTheOldestFinalJobs) {
   // After this call the first collection is done. The next collection is due ten minutes or a
   // thousand jobs later.
   EXPECT_TRUE(jobs().empty());

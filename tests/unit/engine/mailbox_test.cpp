@@ -41,7 +41,7 @@ TEST(Mailbox, CallsItsFunctionAlsoWithoutTasks) {
   box.wait([](int n) { return n >= 3; });
 }
 
-TEST(Mailbox, WaitingTasksAreDroppedAndAnsweredAtStop) {
+TEST(Mailbox, StopAnswersWaitingTasksWithUnavailable) {
   Box<absl::Status> box;
   const auto answer = [&] {
     return Answer<int>([&](absl::StatusOr<int> value) { box.put(value.status()); });

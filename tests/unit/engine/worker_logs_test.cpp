@@ -28,7 +28,7 @@ TEST(WorkerLogs, AnErrorListsTheWorkersWithLogs) {
   EXPECT_THAT(std::string(logs.of("desk").status().message()), HasSubstr("laptop"));
 }
 
-TEST(WorkerLogs, DropsTheLogThatGotNoLinesForLongestIfThereAreTooManyBytes) {
+TEST(WorkerLogs, IfThereAreTooManyBytesTheLogWithTheOldestLastLineIsDropped) {
   WorkerLogs logs(100, 3'000);
   logs.add("one", {std::string(1'000, 'x')});
   logs.add("two", {std::string(1'000, 'x')});

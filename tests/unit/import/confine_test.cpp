@@ -51,7 +51,7 @@ int opens(const std::string& path, int flags) {
   return open(path.c_str(), flags, 0600) >= 0 ? 0 : errno;
 }
 
-TEST(Confine, ForbidsNetworkProgramsNewProcessesAndSignalsToOthers) {
+TEST(Confine, ForbidsSocketsOtherProgramsNewProcessesAndSignalsToOthers) {
   const Folders folders;
   EXPECT_EQ(confined(folders, [] { return socket(AF_INET, SOCK_STREAM, 0) < 0 ? errno : 0; }),
             EPERM);

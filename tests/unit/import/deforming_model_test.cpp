@@ -184,7 +184,7 @@ TEST_F(DeformingModel, AMeshWhosePoseRestsDoesNotDeform) {
 
 // A morph target makes one vertex infinite when the exposure ends, but not when the exposure
 // begins.
-TEST_F(DeformingModel, TrianglesThatAreNotFiniteAtEitherEndAreLeftOut) {
+TEST_F(DeformingModel, ATriangleThatIsNotFiniteAtOneEndOfTheExposureIsLeftOut) {
   GltfWriter file = quad(0, 1, 0, 1);
   file.primitive()["targets"] =
       Json::array({{{"POSITION", file.add<float>({0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 0, 0, 0}, 3)}}});

@@ -145,7 +145,7 @@ TEST(GltfVolume, AMeshWithoutAThicknessIsAThinPane) {
 // The base's normal map uses the first set of uvs. Its scale is 0, so the map has no effect. The
 // coat's normal map uses the second set, which is rotated by a quarter turn. So the picture must be
 // the same with and without the base's map.
-TEST(GltfCoat, ItsNormalMapUsesItsOwnUvs) {
+TEST(GltfCoat, TheNormalMapUsesTheSetOfUvsThatItNames) {
   const TempDir folder;
   write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");
   const WavySquare square(2);

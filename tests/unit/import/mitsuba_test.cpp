@@ -218,7 +218,7 @@ TEST_F(MitsubaScene, DamagedXmlIsRefusedWithItsLine) {
   EXPECT_THAT(error(deep), HasSubstr("elements are nested more than 50 deep"));
 }
 
-TEST_F(MitsubaScene, NumbersMustBeFinite) {
+TEST_F(MitsubaScene, InvalidNumbersAndTransformsAreRefused) {
   const auto placed = [&](const std::string& step) {
     return error("<shape type=\"sphere\"><transform name=\"to_world\">\n" + step +
                  "</transform></shape>");

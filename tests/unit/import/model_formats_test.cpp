@@ -95,7 +95,7 @@ std::string tga_with_alpha(char alpha_of_black, char alpha_of_white) {
   return std::string(header, sizeof header) + std::string(texels, sizeof texels);
 }
 
-TEST_F(Obj, AnOpacityMapIsReadFromItsAlphaUnlessThatIsOpaque) {
+TEST_F(Obj, AnOpacityMapIsReadFromItsAlphaUnlessItsAlphaIsOpaqueEverywhere) {
   const auto opacities = [&](const std::string& text) {
     const ImportedScene imported = read(text);
     EXPECT_THAT(imported.info.warnings, IsEmpty());
