@@ -145,7 +145,7 @@ TEST_F(ReportFiles, APictureBesideAModelIsReplacedOnlyIfItHasAReport) {
   EXPECT_TRUE(check_default_output("cube.obj", folder_ / "other.png").ok());
   ASSERT_TRUE(write_reports(report_text({finished(), "", {}}), {folder_ / "cube.json"}).ok());
   EXPECT_TRUE(check_default_output("cube.obj", picture).ok())
-      << "its report shows that it is a render";
+      << "the report beside the picture shows that the picture is a render";
 }
 
 TEST_F(ReportFiles, ReplaceAnEarlierReport) {

@@ -150,7 +150,7 @@ TEST_F(EngineTest, ARepeatedBandIsADuplicateAndAfterTheJobItIsUnwanted) {
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kDuplicate);
   const BandPixels more = rendered({.samples = {0, 8}, .rows = {5, 10}});
-  EXPECT_EQ(*farm_.put(job, more), BandOutcome::kStored) << "some of its rows are new";
+  EXPECT_EQ(*farm_.put(job, more), BandOutcome::kStored) << "some rows of the band are new";
   EXPECT_EQ(*farm_.put(job, rendered({.samples = {0, 8}, .rows = {10, 14}})), BandOutcome::kStored);
   expect_done(job, 8);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kUnwanted);

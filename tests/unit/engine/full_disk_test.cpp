@@ -120,7 +120,7 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   Box<absl::Status> said;
   farm_.engine().submit(other, [](const absl::StatusOr<JobId>&) {});
   farm_.engine().submit(same, [&](const absl::StatusOr<JobId>& id) { said.put(id.status()); });
-  said.take().IgnoreError();
+  said.take().IgnoreError();  // the answer may be an error, but must come
   disk_->mend();
   expect_local_image(job);
 }

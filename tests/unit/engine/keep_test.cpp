@@ -1,6 +1,6 @@
-// A coordinator that receives thousands of jobs forgets its oldest final jobs. Old jobs are
-// collected every ten minutes, and also after a thousand new jobs. Here the coordinator keeps five
-// final jobs.
+// A coordinator that receives thousands of jobs forgets its oldest final jobs. A collection, which
+// removes these jobs, takes place every ten minutes, and also after a thousand new jobs. Here the
+// coordinator keeps five final jobs.
 
 #include <gtest/gtest.h>
 

@@ -78,7 +78,7 @@ TEST(Curve, RestsWhereItsValueDoesNotChange) {
   EXPECT_TRUE(curve.rests(-1, 0.9));
   EXPECT_TRUE(curve.rests(2, 9));
   EXPECT_FALSE(curve.rests(0.5, 1.5));
-  EXPECT_TRUE(curve.rests(1.5, 1.5)) << "an interval of length 0";
+  EXPECT_TRUE(curve.rests(1.5, 1.5)) << "a curve must rest in an interval of length 0";
   EXPECT_FALSE(numbers({0, 1}, {0, 5, 1, 0, 5, 0}, Interpolation::kCubic).rests(0, 1))
       << "the keys are equal, but their tangents are not 0";
 }

@@ -91,7 +91,8 @@ TEST_F(MitsubaScene, CropsBecomeWindows) {
   EXPECT_THAT(camera.look_at(), ElementsAre(1, 2, 0));
   EXPECT_FALSE(camera.mirrored());
   EXPECT_NEAR(camera.vertical_fov(), 2 * std::atan(0.5) * 180 / M_PI, 1e-12);
-  EXPECT_THAT(camera.window(), ElementsAre(0, 2, -1, 1)) << "the right half";
+  EXPECT_THAT(camera.window(), ElementsAre(0, 2, -1, 1))
+      << "the window must be the right half of the image";
   EXPECT_EQ(converted->scene.image().width(), 100u);
   EXPECT_EQ(converted->scene.image().filter().box().radius(), 0.5);
 }
@@ -312,13 +313,15 @@ TEST_F(MitsubaScene, AConductorWithoutAMetalIsAMirror) {
     EXPECT_FALSE(metal(version, "").has_eta()) << version;
     EXPECT_FALSE(metal(version, "").has_k()) << version;
   }
-  EXPECT_FALSE(metal("3.0.0", "<rgb name=\"k\" value=\"2 2 2\"/>").has_eta()) << "eta is 0";
+  EXPECT_FALSE(metal("3.0.0", "<rgb name=\"k\" value=\"2 2 2\"/>").has_eta())
+      << "without eta, eta is 0, so the conductor is a mirror whatever k is";
   const auto glossy = metal("3.0.0", "<rgb name=\"eta\" value=\"0.5 1 2\"/>");
   EXPECT_THAT(glossy.eta().rgb(), ElementsAre(0.5, 1, 2));
   EXPECT_THAT(glossy.k().rgb(), ElementsAre(1, 1, 1));
   const auto copper = metal("3.0.0", "<string name=\"material\" value=\"Cu\"/>");
   EXPECT_TRUE(copper.has_eta());
-  EXPECT_EQ(metal("0.6.0", "").eta().rgb(0), copper.eta().rgb(0)) << "the default of version 0.6";
+  EXPECT_EQ(metal("0.6.0", "").eta().rgb(0), copper.eta().rgb(0))
+      << "the default metal of version 0.6 must be copper";
 }
 
 /// The expected values are those that the renderer Tungsten lists. They are the linear RGB of the
