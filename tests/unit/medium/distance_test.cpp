@@ -69,6 +69,8 @@ void expect_density(const std::function<double(double, double)>& sample,
   EXPECT_GT(result.p_value, test::sidak(0.01, 16)) << result.statistic << " " << result.degrees;
 }
 
+/// Compares the distances that FreeFlight samples with its pdf, in a segment of this length. Light
+/// with the weight `throughput` enters the segment.
 void expect_flight_density(const Medium& medium, const Rgb& throughput, double length,
                            std::uint64_t seed) {
   const FreeFlight flight(medium, throughput, length);
@@ -166,8 +168,8 @@ TEST(Equiangular, DistancesFollowThePdf) {
     for (const double length : {2.0, kInfinity}) {
       const Vec3 pivot = origin + direction * along + Vec3{0, 0.9, 0.45};
       const Equiangular angles(origin, direction, length, pivot);
-      // On an infinite ray, the tail 1 / s^2 of the pdf is cut at 1e4. About 1e-4 of the samples
-      // are beyond that.
+      // On an infinite ray, the tail 1 / s^2 of the pdf is cut at s = 1e4. About 1e-4 of the
+      // samples are beyond 1e4.
       expect_density([&](double, double u) { return angles.sample(u); },
                      [&](double s) { return angles.pdf(s); }, length, ++seed);
     }

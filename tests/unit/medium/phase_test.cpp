@@ -27,7 +27,8 @@ TEST(Phase, PdfMatchesItsSamples) {
   }
 }
 
-/// For |g| up to its maximum, everything is finite and the mean cosine is g.
+/// For |g| up to kMaxG, the directions have length 1, their pdf is positive, and the mean of the
+/// cosine is g.
 TEST(Phase, V5_MeanCosineIsG) {
   const Vec3 direction = normalize({-0.2, 0.1, -0.9});
   for (const double g : {-kMaxG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMaxG}) {

@@ -150,6 +150,7 @@ TEST(Tracking, EveryChannelKeepsItsMeanAndTheSumOfChannelsDoesNotGrow) {
     const Rgb pass_weight = flight.scattered ? Rgb{} : flight.throughput;
     const Rgb scatter_weight = flight.scattered ? flight.throughput : Rgb{};
     const Rgb point = pass(medium, kAlong, kLength, entering, numbers).scattered.weight;
+    // The sum of the channels of `entering` is 3.5.
     EXPECT_LE(flight.throughput.r + flight.throughput.g + flight.throughput.b, 3.5f * 1.0001f);
     for (std::size_t c = 0; c < 3; ++c) {
       const auto channel = [c](const Rgb& rgb) { return c == 0 ? rgb.r : c == 1 ? rgb.g : rgb.b; };
@@ -220,9 +221,10 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
     ASSERT_EQ(flight.emitted.b, 0);
     seen.add(flight.emitted.g);
   }
-  // The expected value is the emission 2 times the grid's factor 2 times 0.01 over a length of 128
-  // cells. This length is half a cell before the first centre, 127 cells between centres, and half
-  // of the cell in which the emission falls to 0.
+  // The expected value is the medium's green emission 2 times the grid's factor 2 times 0.01 times
+  // a length of 128 cells. Half a cell lies before the first centre, and 127 cells lie between the
+  // centres with 0.01. Up to the next centre, the grid falls from 0.01 to 0, which counts as half a
+  // cell.
   EXPECT_LT(std::abs(seen.z(2 * 2 * 0.01 * (0.5 + 127.5))), 4);
 }
 
@@ -273,6 +275,7 @@ TEST(Tracking, ADensityMayHaveThreeChannels) {
     EXPECT_LT(std::abs(passing[c].z(through)), 4) << c;
     EXPECT_LT(std::abs(passed[c].z(through)), 4) << c;
   }
+  // The integral of the density times exp(-0.5 * depth).
   EXPECT_LT(std::abs(emitted.z(2 * (1 - std::exp(-0.5 * kLinear.depth(kLength))))), 4);
 }
 

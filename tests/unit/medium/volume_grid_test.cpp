@@ -62,7 +62,7 @@ VolumeGrid sparse() { return test::grid_of({19, 9, 23}, {}, {1, 1, 1}, sparse_nu
 TEST(BrickBuilder, KeepsEveryNumber) {
   const VolumeGrid grid = sparse();
   ASSERT_TRUE(check_grid(grid).ok()) << check_grid(grid).status();
-  EXPECT_EQ(*check_grid(grid), 3.0f);
+  EXPECT_EQ(*check_grid(grid), 3.0f);  // the largest number, 30 * 0.1
   EXPECT_EQ(grid.format, VolumeGrid::Format::kFloat32);
   EXPECT_EQ(grid.index.size(), 3 * 2 * 3 * 4u);
   // 3 x 2 x 3 bricks, of which 1 x 2 x 2 are empty.
@@ -215,6 +215,7 @@ TEST(GridBounds, AreTightWhereTheDensityIsConstant) {
   EXPECT_EQ(GridBounds(grid).over({0, 8, 8}, {8, 16, 16}).least, 0);
 }
 
+/// Returns the message of the error of an invalid grid; empty if the grid is valid.
 std::string error_of(const VolumeGrid& grid) {
   return std::string(check_grid(grid).status().message());
 }

@@ -58,6 +58,7 @@ TEST(BlobFolder, DistinguishesMissingFromDamagedBlobs) {
   EXPECT_EQ(blobs.get(digest).status().code(), absl::StatusCode::kDataLoss);
 }
 
+// The second argument of clean_text() is the maximum number of bytes of the result.
 TEST(CleanText, KeepsValidText) {
   EXPECT_EQ(clean_text("Grüße, 世界 🪚", 100), "Grüße, 世界 🪚");
 }
@@ -69,7 +70,7 @@ TEST(CleanText, ReplacesInvalidBytes) {
 }
 
 TEST(CleanText, CutsBetweenCharacters) {
-  EXPECT_EQ(clean_text("aüb", 2), "a");
+  EXPECT_EQ(clean_text("aüb", 2), "a");  // ü has two bytes
   EXPECT_EQ(clean_text("aüb", 3), "aü");
 }
 

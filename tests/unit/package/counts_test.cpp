@@ -51,6 +51,7 @@ std::string error_after(const std::function<void(package::Manifest&)>& change) {
   return std::string(status.message());
 }
 
+// The blob `indices` has 12 bytes for each triangle.
 TEST(Counts, MeshesLargerThanABvhHoldsAreRefusedUnread) {
   EXPECT_EQ(error_after([](package::Manifest& m) {
               m.mutable_mesh(1)->mutable_indices()->set_size(12 * (kMaxTreeItems + 1));

@@ -371,7 +371,7 @@ const std::vector<Wrong> kWrong = {
     {"grid_index", [](auto& m) { *m.mutable_grid(0)->mutable_index() = m.grid(0).values(); },
      "grids[0].index: must have 8 bytes for 2 bricks"},
     {"grid_places",
-     // The blob of the grid's values is used as the index too, so an entry of it is out of range.
+     // The blob of the values is also used as the index. So an entry of the index is out of range.
      [](auto& m) {
        m.mutable_grid(1)->set_cells(0, 8 * 32);
        m.mutable_grid(1)->set_cells(1, 8 * 4);

@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene that contains every kind of object, with every property, that a package (a scene as a
-// manifest and blobs) can hold. Used by the tests of packages.
+// A scene for the tests of packages. A package is a scene in the form of a manifest and blobs (byte
+// arrays). The scene has every kind of object that a package can hold, with every property.
 
 #include <cstring>
 

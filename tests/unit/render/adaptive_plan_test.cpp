@@ -1,11 +1,12 @@
 // The plan of adaptive sampling. It says how many samples each half tile gets, by the noise that
-// was measured in the pilot, the first samples of all pixels. The result must not be biased. A tile
+// was measured in the pilot, the first samples of all pixels. The image must not be biased. A tile
 // of 16 x 16 pixels has two half tiles, and each half tile is planned by the noise of the other
-// one. TilePlan::levels has a digit l (0 to f) for each half tile, which then gets 2^((6 - l) / 2)
-// times the samples of uniform sampling. TilePlan::even() is true if every half tile gets the
-// samples of uniform sampling. A half tile consists of groups of pixels that share paths. It has
-// two TileErrors: one of its groups with even numbers, and one of its groups with odd numbers. An
-// id such as A5 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// one. TilePlan::levels has a digit l (0 to f) for each half tile. A half tile with the digit l
+// gets 2^((6 - l) / 2) times the samples of uniform sampling. TilePlan::even() is true if every
+// half tile gets the samples of uniform sampling. A half tile consists of groups of pixels that
+// share paths. It has two TileErrors: one of its groups with even numbers, and one of its groups
+// with odd numbers. An id such as A5 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/render/adaptive_plan.h"
 
@@ -59,7 +60,8 @@ TEST(AdaptivePlan, SamplesAreProportionalToTheStandardDeviation) {
   const TilePlan plan = plan_tiles(grid, tiles, 64);
   EXPECT_EQ(plan.pilot, 64u);
   // The root of the mean variance is sqrt((1 + 1/64) / 2), about 0.71. The standard deviation 1 is
-  // 1.40 times that, so the nearest level is 5: 2^(1/2) times the samples of uniform sampling.
+  // 1.40 times that, so the nearest level is 5: 2^(1/2) times the samples of uniform sampling. The
+  // level b (11) has 2^(-5/2) times the samples, an eighth of the samples of level 5.
   EXPECT_EQ(plan.levels[0], '5');
   EXPECT_EQ(plan.levels[2 * 31], 'b');
   EXPECT_NEAR(share_of(plan, 2 * 31) / share_of(plan, 0), 0.125, 1e-12);
@@ -179,6 +181,7 @@ struct Result {
   int planned = 0;  ///< number of renders with Rendered::planned
 };
 
+/// Calls render_pixel() with `runs` different seeds.
 Result renders(const Pixel& pixel, int runs, bool naive = false) {
   Result result;
   for (int i = 0; i < runs; ++i) {

@@ -1,5 +1,6 @@
 // Files of band records. A record has the sums of the pixels of a band, the settings with which the
-// band was rendered, and the CPU time. Records read back as written, and every damage is detected.
+// band was rendered, and the CPU time. Records are read back as they were written, and every damage
+// is detected.
 
 #include "renderlib/render/band_file.h"
 
@@ -18,6 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+/// Returns a valid record of the samples [32, 60) of the rows [4, 6). It has two bad samples.
 BandRecord record() {
   BandRecord record{.package_digest = std::string(60, 'a') + "09bf",
                     .settings = {.width = 3,

@@ -27,8 +27,8 @@ TEST(BandParts, AWholeBandNeedsTheMapsOfItsSamples) {
   EXPECT_EQ(maps_of({{{0, kSamplesOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
 }
 
-// The image has two tiles of 16 x 16 pixels, and half of the pixels of a tile are a half tile. The
-// four half tiles have one, two, no and four blocks of samples. The band is divided until each part
+// The image has two tiles of 16 x 16 pixels. A half tile is half of the pixels of a tile. The four
+// half tiles have one, two, no and four blocks of samples. The band is divided until each part
 // needs one map. Each sample of each half tile must be in one part.
 TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
   TileSamples tiles(32, {0, 16});

@@ -1,6 +1,6 @@
 // Bands (ranges of rows by ranges of samples): the nodes of the summation tree, validation, and
-// counters. The samples of a pixel are added up in this fixed binary tree, so that the sum has the
-// same bits however the samples are divided into bands.
+// counters. The summation tree is a fixed binary tree in which the samples of a pixel are added up.
+// So the sum has the same bits however the samples are divided into bands.
 
 #include "renderlib/render/band.h"
 
@@ -101,6 +101,8 @@ TEST(Band, SettingsOutOfRangeAreRefusedWithTheField) {
             "max_depth: must be in [1, 1024], is 1025");
 }
 
+// Bad samples are NaN, infinite or negative. The first one is that with the lowest row, then the
+// lowest column, then the lowest sample number. `rays` only tells the four parts apart.
 TEST(Band, CountersKeepTheFirstBadSampleInAnyOrderOfAdding) {
   std::vector<Counters> parts = {
       {.rays = 1, .bad_samples = 1, .bad_x = 9, .bad_y = 2, .bad_sample = 0},

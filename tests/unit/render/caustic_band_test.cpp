@@ -48,8 +48,8 @@ TEST(CausticBand, HasPhotonMaps) {
   for (const bool closed : {true, false}) {
     const auto trained =
         train_guiding(*scene(closed), {21, 18, 6}, {pool, kGoOn}, /*photon_maps=*/true);
-    EXPECT_FALSE(trained->sources->casters.empty());
-    EXPECT_TRUE(trained->sources->surfaces);
+    EXPECT_FALSE(trained->sources->casters.empty());  // caustics come from photon maps
+    EXPECT_TRUE(trained->sources->surfaces);          // indirect light comes from photon maps
   }
 }
 
@@ -108,7 +108,8 @@ TEST(CausticBand, ProgressCountsEachRowOnce) {
                                   [&](std::uint32_t done) { rows.push_back(done); });
   ASSERT_TRUE(pixels.ok());
   const auto steps = std::count(rows.begin(), rows.end(), 0u);
-  // There are three rounds of training and more than eight maps, and each of them has 64 steps.
+  // There are three rounds of training and more than eight maps. Each round and each map has 64
+  // steps.
   EXPECT_GE(steps, 64 * 10);
   std::erase(rows, 0u);
   EXPECT_EQ(rows, (std::vector<std::uint32_t>{1, 2, 3}));

@@ -73,6 +73,8 @@ TEST(ErrorEstimate, TheMarginGrowsWithFewerGroups) {
   }
 }
 
+// `worst_share` is the share of the worst thousandth of the pixels, here two, in the sum of the
+// squared errors.
 TEST(ErrorEstimate, ADominantPixelMakesTheEstimateDoubtful) {
   Pixels even;
   Pixels uneven;

@@ -27,8 +27,9 @@ Film make_film(std::uint32_t width, std::uint32_t height, const std::string& fol
   return *std::move(film);
 }
 
-/// Returns the mean of the values of film_values.h. The sums of the maximal nodes are added from
-/// the first node to the last.
+/// Returns the mean of the first `samples` values of film_values.h for row y and k = 3 x + channel.
+/// The maximal nodes are the fewest nodes that tile the samples. Their sums are added from the
+/// first node to the last.
 float expected(std::uint32_t y, std::size_t k, std::uint64_t samples) {
   double total = 0;
   bool first = true;
@@ -40,6 +41,7 @@ float expected(std::uint32_t y, std::size_t k, std::uint64_t samples) {
   return static_cast<float>(total / static_cast<double>(samples));
 }
 
+/// Expects that the film has exactly the first `samples` samples of every pixel.
 void expect_image(const Film& film, std::uint64_t samples) {
   const Film::Snapshot snapshot = film.snapshot();
   EXPECT_EQ(snapshot.least_samples, samples);
@@ -157,7 +159,8 @@ TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {
     ASSERT_TRUE(film.add(band_pixels({node, {0, 1}}, 2)).ok());
     EXPECT_EQ(film.first_part().has_value(), node.first > 0);
   }
-  // The third node makes the first part larger, so the fourth is in the second part.
+  // The first two nodes are in different parts. The third node goes to the first part, which is
+  // then the larger part. So the fourth node goes to the second part.
   const auto part = film.first_part();
   ASSERT_TRUE(part);
   ASSERT_EQ(part->share.size(), 2u);

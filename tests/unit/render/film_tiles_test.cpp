@@ -55,8 +55,9 @@ BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& 
   return pixels;
 }
 
-// The bands of all passes are added in random order. Each pixel has its own number of samples. Its
-// value must be the sum of the maximal nodes of this number, divided by this number.
+// The bands of all passes are added in random order. Each pixel has its own number n of samples.
+// The maximal nodes of n are the fewest nodes that tile the samples [0, n). The value of the pixel
+// must be the sum of these nodes, divided by n.
 TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
   const TileGrid grid{19, 18};
   Random random(3);
@@ -85,6 +86,7 @@ TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
       EXPECT_FALSE(film.add(pixels_of(band, grid, tiles), tiles).ok())
           << "a second copy must be refused";
     }
+    // Samples that a half tile does not take count as covered.
     EXPECT_TRUE(film.complete(samples));
     EXPECT_EQ(film.snapshot().least_samples, samples);
     const Image image = film.snapshot().image;

@@ -1,10 +1,10 @@
 #pragma once
 
-// Values for the tests of Film (which adds the sums of bands to an image). Their sums are computed
-// here by the definition of the summation tree (render/band.h). A node of this tree is a range of
-// samples. The sum of a node is the sum of its two halves. In a node of one block of 8 samples, the
-// samples are added in order. `y` is a row of the image, and `k` = 3 x + c is channel c of the
-// pixel in column x.
+// Sample values for the tests of Film (which adds the sums of bands to an image). The sums of the
+// values are computed here by the definition of the summation tree (render/band.h). A node of this
+// tree is a range of samples. The sum of a node is the sum of its two halves. In a node of one
+// block of 8 samples, the samples are added in order. `y` is a row of the image, and `k` = 3 x + c
+// is channel c of the pixel in column x.
 
 #include <cmath>
 #include <vector>

@@ -1,5 +1,5 @@
-// The first part of an image is an image of about the first half of its samples. The denoiser needs
-// it beside the whole image. The share of a pixel is the number of its samples in the first part,
+// The first part of an image is an image of about half of its samples. The denoiser needs the first
+// part beside the whole image. The share of a pixel is the number of its samples in the first part,
 // divided by the number of all its samples.
 
 #include "renderlib/render/first_part.h"
@@ -38,6 +38,9 @@ TEST(FirstPart, SharesAreThoseOfTheFilm) {
   EXPECT_EQ(film_of(5000).first_part()->share, first_part_shares(5000, 2));
 }
 
+// The first part has 16 of the 32 samples of the first pixel. The 112 samples of the second pixel
+// are four ranges of 32, 32, 32 and 16 samples. The first and the third range are in the first
+// part.
 TEST(FirstPart, EachPixelOfAnAdaptiveImageHasItsShare) {
   const Image counts{2, 1, {gray(32), gray(112)}};
   EXPECT_EQ(first_part_shares(counts), (std::vector<float>{0.5f, static_cast<float>(64.0 / 112)}));

@@ -13,7 +13,8 @@ namespace bandsaw::test {
 namespace {
 
 /// Returns for each pixel the number of its group, or -1 if the pixel is in no group. The groups
-/// are numbered over the whole image. Checks that no pixel is in two groups.
+/// are numbered over the whole image. Checks that each group is in one half tile, that no pixel is
+/// in two groups, and that the groups of a half tile differ by at most one pixel in size.
 std::vector<int> groups_of(const TileGrid& grid) {
   std::vector<int> groups(std::size_t{grid.width} * grid.height, -1);
   int number = 0;
@@ -72,9 +73,9 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
   }
 }
 
-// For any offset between two pixels, at most 5.1 % of the pairs of pixels are in one group. The
-// tested bound of 5.25 % allows for the edge of the image. The errors of two pixels in one group
-// have a correlation of up to 0.95, so the correlation at any offset is at most 5 % on average.
+// Of all pairs of pixels with the same offset, at most 5.1 % are in one group. The tested bound of
+// 5.25 % allows for the edge of the image. The errors of two pixels in one group have a correlation
+// of up to 0.95, so the correlation at any offset is at most 5 % on average.
 TEST(PixelGroups, PixelsAtEveryDistanceRarelyShareAGroup) {
   constexpr int kSide = 256;
   const std::vector<int> groups = groups_of({kSide, kSide});

@@ -73,6 +73,7 @@ TEST(RenderBand, SkippedHalfTilesAreZeroAndOthersHaveTheSameBits) {
       ASSERT_EQ(some->sums[k], half_of(x, y) == 1 ? all.sums[k] : 0);
     }
   }
+  // Half tile 1 has about half of the pixels.
   EXPECT_LT(some->counters.rays, all.counters.rays * 6 / 10);
 }
 
@@ -93,7 +94,7 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsForAnyBandsAndThreads) {
     EXPECT_GT(*std::max_element(whole.begin(), whole.end()), 0);
   }
   RenderSettings settings = kSettings;
-  settings.integrator = static_cast<Integrator>(kLastGuideIntegrator + 1);
+  settings.integrator = static_cast<Integrator>(kLastGuideIntegrator + 1);  // does not exist
   EXPECT_FALSE(validate(settings).ok());
 }
 
@@ -156,8 +157,8 @@ TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   EXPECT_NE(both.sums, lights.sums);
   EXPECT_NE(both.sums, guided.sums);
   EXPECT_LT(scattering.counters.rays, both.counters.rays);
-  // In the box, pixels share paths, and with light sampling alone fewer connections between them
-  // carry light, so there are fewer rays.
+  // In the box, pixels share paths. With light sampling alone, fewer connections between the paths
+  // of two pixels carry light, so there are fewer rays.
   EXPECT_LE(lights.counters.rays, both.counters.rays);
   EXPECT_NEAR(total(lights) / total(both), 1, 0.02);
   EXPECT_NEAR(total(guided) / total(both), 1, 0.02);
@@ -272,7 +273,7 @@ TEST(RenderBand, InvalidBandsAreRefused) {
 }
 
 TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
-  // Inside glass, radiance is n^2 times that outside: 25 times this value overflows a float.
+  // Inside glass, radiance is n^2 times that outside: 25 times 3e38 overflows a float.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.background({3e38f, 1, 0}, {3e38f, 1, 0});
@@ -294,7 +295,7 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsFiniteSamples) {
-  // Samples overflow as in the test above, except that a quarter of all samples hits a small
+  // Samples of the background overflow as in the test above. A quarter of all samples hits a small
   // emitter of radiance 1 in front of the camera. So the mean of the finite samples is 1.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);

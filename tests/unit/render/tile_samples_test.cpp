@@ -125,6 +125,7 @@ TEST(TileSamples, PartsOfAPassAddUpToThePass) {
   }
 }
 
+// There are two numbers for each half tile: its first sample and its number of samples.
 TEST(TileSamples, InvalidNumbersAreRefused) {
   const auto refused = [](const std::vector<std::uint32_t>& numbers, const RowRange& rows) {
     const auto tiles = TileSamples::from_numbers(numbers, 16, rows);
@@ -171,6 +172,7 @@ TEST(TileSamples, CountersMustFitTheSamplesTaken) {
       << "the pixel is in the other half, which takes no samples";
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 16, .bad_y = 2, .bad_sample = 100}));
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 4, .bad_sample = 100}));
+  // Half tile 0 has 32 pixels in the four rows, and each pixel takes 64 samples.
   EXPECT_TRUE(good({.truncated_paths = 32 * 64}));
   EXPECT_FALSE(good({.truncated_paths = 32 * 64 + 1}));
 }

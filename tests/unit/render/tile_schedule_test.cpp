@@ -19,9 +19,9 @@ using test::Moments;
 constexpr TileGrid kWideGrid{512, 32};  ///< pixels: 32 x 2 tiles
 
 /// Returns a plan that gives the left half of the image twice the uniform number of samples, and
-/// the right half an eighth of it. The level '4' means 2^((6 - 4) / 2) times the uniform number,
-/// and 'c' (12) means 2^((6 - 12) / 2) times. `pilot` is the number of samples that all pixels have
-/// before the plan is made.
+/// the right half an eighth of the uniform number. The level '4' means 2^((6 - 4) / 2) times the
+/// uniform number, and 'c' (12) means 2^((6 - 12) / 2) times. `pilot` is the number of samples that
+/// all pixels have before the plan is made.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
   for (std::size_t i = 0; i < kWideGrid.half_tiles(); ++i) {
@@ -64,8 +64,8 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
   }
 }
 
-// The half tile has 48 samples, fewer than its share. In each pass it takes the longest node that
-// begins where its samples end: 16 samples at 48, 64 at 64, 128 at 128.
+// Half tile 0 has 48 samples, fewer than its share. In each pass it takes the longest node that
+// begins where its samples end: 16 samples from 48 on, 64 from 64 on, and 128 from 128 on.
 TEST(TileSchedule, AHalfTileBelowItsShareTakesTheLongestNode) {
   TileSchedule schedule(kWideGrid, half_noisy(48));
   EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
