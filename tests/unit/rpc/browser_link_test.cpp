@@ -114,7 +114,7 @@ TEST_F(BrowserLinkTest, RefusesInvalidAndForbiddenRequests) {
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   ask(/*seconds=*/10, /*revoke=*/true);
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  access_->set_address("");
+  access_->set_address("");  // as without the option --web
   ask();
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_THAT(status_.error_message(), HasSubstr("--web"));

@@ -23,6 +23,7 @@ using ::testing::HasSubstr;
 
 class ChunksTest : public FarmTest {
  protected:
+  /// Expects a status with this code and a message that contains `what`.
   static void expect(const grpc::Status& status, StatusCode code, const std::string& what) {
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_THAT(status.error_message(), HasSubstr(what));
@@ -89,7 +90,7 @@ class ChunksTest : public FarmTest {
     return reply.there_size() == 1 ? reply.there(0) : 0;
   }
   /// Waits until the coordinator has noticed that the sender disconnected. Returns how many bytes
-  /// of the blob it has.
+  /// of the blob the coordinator has.
   std::uint64_t wait_until_there(const std::string& bytes) {
     std::uint64_t there = 0;
     while (there == 0 && !HasFailure()) {
@@ -253,7 +254,7 @@ TEST_F(ChunksTest, ABandsMemoryIsReservedWhenItsHeaderArrives) {
     const auto others = engine_->bands().take(static_cast<std::uint64_t>(all - 144));
     ASSERT_TRUE(others);
     EXPECT_NE(put_bands({band_chunk()}).status.error_code(), StatusCode::RESOURCE_EXHAUSTED)
-        << "a whole band is counted once";
+        << "the memory of a whole band must be reserved only once";
   }
   wait_until_left(all);
 }

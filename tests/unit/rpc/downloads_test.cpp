@@ -61,7 +61,8 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   const Reader slow = get_result(*call, job);  // the client does not read yet
   wait_until_left(all - kImageBytes);
 
-  // Other images take so much of the budget that a byte is missing for a second download.
+  // Other images take so much of the budget that one byte is missing for a second download. The
+  // image has 12 MiB, and the message names the next larger whole number.
   auto others = engine_->images().take(static_cast<std::uint64_t>(all - 2 * kImageBytes + 1));
   ASSERT_TRUE(others);
   const grpc::Status refused = whole_result(job);

@@ -42,8 +42,8 @@ class FarmTest : public ::testing::Test {
     std::vector<farm::PutBandReply::Outcome> outcomes;
     grpc::Status status;
   };
-  /// Returns a band of two rows of three pixels, of an unknown job, in one chunk. `sums`: three for
-  /// each pixel.
+  /// Returns one chunk with a whole band of job 1, which does not exist unless the test submits a
+  /// job. The band has two rows of three pixels. `sums`: three for each pixel.
   static farm::BandChunk band_chunk(const std::vector<double>& sums = std::vector<double>(18, 0.5));
   /// Sends these chunks as a worker, and returns the answers to the bands.
   PutBands put_bands(const std::vector<farm::BandChunk>& chunks);

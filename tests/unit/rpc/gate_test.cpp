@@ -1,5 +1,6 @@
-// Tests of access control. Each call in the list calls() is made with the secret of each role, with
-// a wrong secret, and without a secret.
+// Tests of access control. A client has the role kFarm (users) or kWorker (workers), and each role
+// has a secret. Each call in the list calls() is made with the secret of each role, with a wrong
+// secret, and without a secret.
 
 #include <gmock/gmock.h>
 
@@ -29,6 +30,7 @@ grpc::Status drain(Reader& reader) {
 
 class GateTest : public FarmTest {
  protected:
+  /// Returns all calls of the protocol, with empty requests.
   std::vector<NamedCall> calls() {
     const auto farm_role = link::Role::kFarm;
     const auto work_role = link::Role::kWorker;

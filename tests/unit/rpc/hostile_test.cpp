@@ -1,6 +1,6 @@
 // Hostile clients: many connections, repeated requests, names that look like paths. Other clients
-// are served at the same time, and nothing is leaked. gate_test tests wrong secrets and roles,
-// link/channel_test wrong certificates, and chunks_test sizes beyond the limits.
+// are served at the same time, and nothing is leaked. Other files test wrong secrets and roles
+// (gate_test), wrong certificates (link/channel_test) and sizes beyond the limits (chunks_test).
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

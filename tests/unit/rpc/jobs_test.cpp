@@ -88,6 +88,7 @@ TEST_F(JobsTest, APriorityIsSetBySubmissionAndMayBeChanged) {
   EXPECT_EQ(job_.priority(), -7);
   ASSERT_TRUE(set_priority(job, 1000).ok());
   EXPECT_EQ(job_.priority(), 1000);
+  // Priorities are at most 1,000.
   EXPECT_EQ(set_priority(job, 1001).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
 }
 

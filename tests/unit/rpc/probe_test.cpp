@@ -1,5 +1,5 @@
-// The health service, which probes of Kubernetes and load balancers call without a secret, and
-// reflection, by which grpcurl lists the services.
+// The health service and reflection of the gRPC server. Probes of Kubernetes and load balancers
+// call the health service without a secret. The tool grpcurl lists the services by reflection.
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/generic_stub.h>

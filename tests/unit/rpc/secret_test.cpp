@@ -35,6 +35,7 @@ class SecretTest : public FarmTest {
     return RenewedSecret{renewed_, "the file", written_};
   }
 
+  /// Makes the call RotateSecret, which renews the secret of the role.
   grpc::Status rotate(farm::SecretRole role, farm::RotateSecretReply* reply) {
     farm::RotateSecretRequest request;
     request.set_role(role);
@@ -60,7 +61,8 @@ class SecretTest : public FarmTest {
   }
 
   link::Identity renewed_;
-  absl::Status written_;  ///< the result of writing the file with the join string
+  /// The result of writing the file with the join string (address, certificate and secret).
+  absl::Status written_;
 };
 
 TEST_F(SecretTest, TheOldSecretOfUsersIsRefusedAndTheNewOneIsNot) {

@@ -42,6 +42,7 @@ TEST_F(ServerTest, ReportsAnInvalidAddress) {
 }
 
 TEST_F(ServerTest, ChecksEachFieldOfASubmission) {
+  // cornell_request() sets stop.samples, and exactly one of samples, error and time_s must be set.
   const std::vector<std::pair<std::string, std::function<void(farm::SubmitRequest&)>>> cases = {
       {"request_id", [](auto& r) { r.set_request_id("short"); }},
       {"request_id", [](auto& r) { r.set_request_id(std::string(65, 'a')); }},

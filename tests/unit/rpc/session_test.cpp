@@ -1,4 +1,5 @@
-// A worker's session and a watched job, and the end of both when the server stops.
+// The streams Session and Watch. A worker stays connected by Session. A user gets the states of a
+// job by Watch. Both streams end when the server stops.
 
 #include <gmock/gmock.h>
 
@@ -16,6 +17,7 @@ namespace {
 using grpc::StatusCode;
 using ::testing::HasSubstr;
 
+/// Returns the first message of a compatible worker.
 farm::FromWorker hello() {
   farm::FromWorker message;
   farm::Hello* h = message.mutable_hello();
@@ -54,7 +56,7 @@ class StreamTest : public FarmTest {
 
   /// Expects that this first message ends the session with an error that contains `what`.
   void expect_refused(const farm::FromWorker& message, const std::string& what) {
-    const grpc::Status status = say({message}, nullptr, false);
+    const grpc::Status status = say({message}, nullptr, /*hang_up=*/false);
     EXPECT_EQ(status.error_code(), StatusCode::INVALID_ARGUMENT) << what;
     EXPECT_THAT(status.error_message(), HasSubstr(what));
   }
@@ -85,7 +87,7 @@ TEST_F(StreamTest, RefusesLogsThatAreTooLongOrHoldControlCharacters) {
   for (const farm::FromWorker& bad :
        {log({"\x1b[2J"}), log({std::string(wire::kLogLineBytes + 1, 'x')}),
         log(std::vector<std::string>(wire::kLogLines + 1, "x"))}) {
-    const grpc::Status status = say({hello(), bad}, nullptr, false);
+    const grpc::Status status = say({hello(), bad}, nullptr, /*hang_up=*/false);
     EXPECT_EQ(status.error_code(), StatusCode::INVALID_ARGUMENT);
     EXPECT_THAT(status.error_message(), HasSubstr("log.line"));
   }
@@ -118,7 +120,7 @@ TEST_F(StreamTest, RefusesAWorkerWithAnotherCanaryAndGivesTheReason) {
   farm::FromWorker other = hello();
   other.mutable_hello()->set_canary(canary() + 1);
   std::vector<farm::ToWorker> answers;
-  EXPECT_TRUE(say({other}, &answers, false).ok());
+  EXPECT_TRUE(say({other}, &answers, /*hang_up=*/false).ok());
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_FALSE(answers[0].refused().reason().empty());
   EXPECT_GT(answers[0].refused().retry_after_ms(), 0U);
@@ -129,7 +131,8 @@ TEST_F(StreamTest, RequiresHelloFirstAndOnce) {
   beat.mutable_heartbeat();
   expect_refused(beat, "hello");
   expect_refused(farm::FromWorker(), "hello");
-  EXPECT_EQ(say({hello(), hello()}, nullptr, false).error_code(), StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(say({hello(), hello()}, nullptr, /*hang_up=*/false).error_code(),
+            StatusCode::INVALID_ARGUMENT);
 }
 
 TEST_F(StreamTest, ChecksEachFieldOfHello) {
@@ -172,7 +175,8 @@ TEST_F(StreamTest, ChecksMessagesAfterHello) {
   farm::FromWorker draining;
   draining.mutable_draining()->set_reason("two\nlines");
   for (const farm::FromWorker& message : {beat, failed, log, draining}) {
-    EXPECT_EQ(say({hello(), message}, nullptr, false).error_code(), StatusCode::INVALID_ARGUMENT)
+    EXPECT_EQ(say({hello(), message}, nullptr, /*hang_up=*/false).error_code(),
+              StatusCode::INVALID_ARGUMENT)
         << message.ShortDebugString().substr(0, 100);
   }
 }

@@ -1,5 +1,5 @@
-// Selection of a cell of a grid with a probability proportional to its weight. An id such as L7 in
-// a test's name is that of a case in tests/hard_cases/cases.txt.
+// Selection of a cell of a grid, with a probability proportional to the weight of the cell. An id
+// such as L7 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/grid_distribution.h"
 
@@ -48,6 +48,8 @@ TEST(GridDistribution, CellsAreSelectedByTheirWeight) {
       << "the remainder of the random number must be uniform";
 }
 
+// The tail, columns 1 to 999, has 1e-12 of the weight. The largest random number selects a cell of
+// the tail.
 TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {
   const GridDistribution grid(1000, 1,
                               [](std::uint32_t x, std::uint32_t) { return x == 0 ? 1e9 : 1e-6; });

@@ -74,7 +74,8 @@ TEST(SphericalRectangle, ComputesSmallSolidAngles) {
     EXPECT_NEAR(rectangle->solid_angle() / truth, 1, 1e-11) << h;
   }
   // The expected solid angle of a small rectangle off to the side is its area times the cosine,
-  // divided by the squared distance 10. An exact formula would subtract nearly equal numbers.
+  // divided by the squared distance. The squared distance is 10, and the cosine is 1 / sqrt(10). An
+  // exact formula would subtract nearly equal numbers.
   const double h = 1e-4;
   const auto aside =
       SphericalRectangle::seen_from({0, 0, 0}, {3 - h, -h, 1}, {2 * h, 0, 0}, {0, 2 * h, 0});
@@ -99,6 +100,7 @@ TEST(SphericalRectangle, L6_CornersOfTheUnitSquareStayInside) {
 }
 
 TEST(SphericalRectangle, IsAbsentForEdgeOnOrTinyRectangles) {
+  // The rectangles are seen edge-on, from very far away, and from a corner.
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 1e6}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));

@@ -1,7 +1,7 @@
-// The sampler, scrambled Sobol' points that are a pure function of seed, pixel, sample and
-// dimension: stratification, independence, and recorded bits. A group is four dimensions, whose
-// numbers are returned by one call. An id such as R1 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Stratification, independence and recorded bits of the sampler. The sampler returns scrambled
+// Sobol' points, which are a pure function of seed, pixel, sample and dimension. A group is four
+// dimensions, whose numbers are returned by one call. An id such as R1 in a test's name is that of
+// a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/sampler.h"
 
@@ -244,8 +244,9 @@ TEST(Sampler, R5_SupportsMoreThanTwoToThe32Samples) {
   test::report_hard_case("R5", "no sample is repeated up to index 4 x 2^32");
 }
 
-/// For a smooth integrand, the error of scrambled nets is far below that of independent samples,
-/// which would be 0.31 / sqrt(256). The bound is about a tenth of it.
+/// For a smooth integrand, the error of scrambled nets is far below the error of independent
+/// samples. With 256 independent samples, the error would be 0.31 / 16. The bound is less than a
+/// tenth of this number.
 TEST(Sampler, IntegratesSmoothFunctionsWell) {
   test::Moments error;
   for (std::uint32_t pixel = 0; pixel < 200; ++pixel) {

@@ -81,6 +81,7 @@ TEST(SphericalTriangle, SolidAnglesMatchClosedForms) {
 }
 
 TEST(SphericalTriangle, IsAbsentForEdgeOnOrSmallTriangles) {
+  // The triangles are seen edge-on, from far away, from a corner, and from a point on an edge.
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 1e3}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));

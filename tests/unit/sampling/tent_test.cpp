@@ -22,7 +22,7 @@ constexpr int kSteps = 64;   ///< steps of the integral of the pdf over a cell
 constexpr int kSamples = 100000;
 
 /// Returns the weight of texel `index` at position x by the definition of linear interpolation. The
-/// unit of x is a texel.
+/// unit of x is a texel. `ends` says whether the row of texels is clamped at its ends or repeated.
 double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   const double centre = index + 0.5;
   if (ends == Ends::kClamped) {
@@ -36,7 +36,8 @@ double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   return sum;
 }
 
-/// Compares 10^5 samples in [0, end] with a pdf that need not be normalised. `tests`: the number of
+/// Compares 10^5 samples in [0, end] with their pdf. `draw(u)` returns a sample for a random number
+/// in [0, 1). `density(x)` returns the pdf, which need not be normalised. `tests`: the number of
 /// such comparisons in the calling test, for the Sidak correction.
 template <class Draw, class Density>
 void expect_density(double end, Draw draw, Density density, std::size_t tests) {

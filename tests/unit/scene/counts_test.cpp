@@ -93,6 +93,7 @@ TEST(Counts, LimitLightsInGroups) {
   const SceneDescription& s = maker.scene;
   EXPECT_THAT(text_of(check_light_counts(geometry, s.materials, s.textures, 0)),
               HasSubstr("2147483648 primitives"));
+  // Without one instance there are 2^31 - 2^16 spheres, so at most 2^16 - 1 further lights fit.
   geometry.instances.pop_back();
   EXPECT_TRUE(check_light_counts(geometry, s.materials, s.textures, 0xffff).ok());
   EXPECT_FALSE(check_light_counts(geometry, s.materials, s.textures, 0x10000).ok());

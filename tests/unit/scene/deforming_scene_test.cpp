@@ -57,6 +57,7 @@ struct BuildOptions {
   std::uint32_t rows = 12;         ///< of each band; a divisor of 12
 };
 
+/// Returns the scene, built with these options.
 std::shared_ptr<const Scene> built(const SceneDescription& scene,
                                    const BuildOptions& options = {}) {
   Pool pool(1);
@@ -66,6 +67,8 @@ std::shared_ptr<const Scene> built(const SceneDescription& scene,
   return built.ok() ? *built : nullptr;
 }
 
+/// Returns the sums of 16 samples of each pixel of an image of 18 x 12 pixels, rendered in bands of
+/// `rows` rows.
 std::vector<double> rendered(const Scene& scene, std::uint32_t rows = 12) {
   Pool pool(1);
   const std::atomic<bool> stop = false;

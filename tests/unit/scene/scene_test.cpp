@@ -139,6 +139,8 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
             }),
             "materials[1].a: a glass with a priority is not part of a mixture");
   EXPECT_EQ(message_after([](auto& s) {
+              // Material i is a mixture whose two parts are both material i - 1. So material i is
+              // made of 2^(i + 1) - 1 materials.
               s.materials[0] = Diffuse{};
               for (std::uint32_t i = 0; i < 9; ++i) {
                 const MaterialId last{i};
