@@ -1,7 +1,7 @@
 // Adaptive jobs give more samples to noisy parts of the image. The first samples of a job are the
 // pilot, which has the same number of samples for every pixel. A half tile is half of the pixels of
-// a square of 16 x 16. The errors of the pilot decide how many samples each half tile gets. This
-// plan is journalled, and every later pass follows it.
+// a square of 16 x 16. The errors of the pilot decide how many samples each half tile gets. These
+// numbers are the tile plan. The plan is written to the journal, and every later pass follows it.
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ std::vector<HalfTileErrors> uneven() {
   std::vector<HalfTileErrors> tiles;
   for (std::uint32_t tile = 0; tile < kGrid.columns() * kGrid.rows(); ++tile) {
     const double variance = tile % kGrid.columns() < kGrid.columns() / 2 ? 1 : 1.0 / 64;
-    const TileError error{64, variance, variance};
+    const TileError error{/*pixels=*/64, variance, /*relative=*/variance};
     tiles.insert(tiles.end(), 2, {error, error});
   }
   return tiles;

@@ -184,8 +184,9 @@ TEST(Audit, TwoMachinesThatRepeatTheirResultsWaitForAThird) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
-/// Returns the farm of two_results after a restart that selects no bands for audits. The row that
-/// worker a stored is on disk.
+/// Returns the farm of two_results after a restart that selects no bands for audits. `records` are
+/// those of the journal, or of a snapshot that replaces them. The row that worker a stored is on
+/// disk.
 AuditFarm after_restart(const AuditFarm& farm, const std::vector<Record>& records,
                         std::uint64_t lie_of_a) {
   SchedulerOptions options = slow();

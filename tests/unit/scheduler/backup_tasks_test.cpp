@@ -114,6 +114,7 @@ TEST(BackupTasks, ALeaseThatIsNotBegunIsStolen) {
   EXPECT_FALSE(in<action::LogReassignment>(step)[0].begun);
 }
 
+// The second argument of learn() is the time that the rows took, divided by the predicted time.
 // fitting() returns how many of the rows, from the first on, cost at most the given amount
 // together. It returns at least 1.
 TEST(CostMap, LearnsTheCostOfRows) {
@@ -128,7 +129,7 @@ TEST(CostMap, LearnsTheCostOfRows) {
   EXPECT_NEAR(cost.of({0, 100}), 300, 1);
   EXPECT_EQ(cost.of({100, 200}), 100);
   EXPECT_NEAR(cost.of_all(), 400, 1);
-  EXPECT_EQ(cost.fitting({0, 200}, 30.5), 10u);
+  EXPECT_EQ(cost.fitting({0, 200}, 30.5), 10u);  // each row costs 3
   EXPECT_EQ(cost.fitting({0, 200}, 0), 1u);
   EXPECT_EQ(cost.fitting({150, 200}, 1e9), 50u);
 }

@@ -1,6 +1,7 @@
-// Browsers as workers, which join by a link and may be malicious: how they are shown, which jobs
-// and bands they get, how their bands are audited (rendered again by another worker and compared),
-// and what the holder of a link cannot do. A tab is a browser that has joined as a worker.
+// Browsers that join the farm as workers by a link, and that may be malicious. The tests cover how
+// browsers are shown, which jobs and bands they get, how their bands are audited (rendered again by
+// another worker and compared), and what the holder of a link cannot do. A tab is a browser that
+// has joined as a worker. A native worker is any worker that is no browser.
 
 #include <cmath>
 #include <map>
@@ -13,7 +14,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Each band has one row. All bands of browsers are audited, and no bands of native workers.
+/// Each band has one row. All bands of browsers are audited. Bands of native workers are not
+/// audited.
 SchedulerOptions browsers_audited() {
   SchedulerOptions options = slow();
   options.browser_audit_share = 1;
@@ -463,9 +465,9 @@ TEST(Browser, BrowsersThatLieAreFoundWithTheExpectedProbability) {
   EXPECT_NEAR(found, expected, 4 * std::sqrt(variance));
 }
 
-// At most kMaxAudits audits of a job can be open. While half as many are open, browsers get no
-// bands, until a native worker has compared one. Checking the invariants after each of thousands of
-// steps would be slow, so there is no FarmDriver here.
+// At most kMaxAudits audits of a job can be open. When half as many are open, browsers get no
+// bands. They get one again when a native worker has done one of the audits. Checking the
+// invariants after each of thousands of steps would be slow, so this test uses no FarmDriver.
 TEST(Browser, GetsNoBandsThatWouldNotBeAudited) {
   SchedulerOptions options = browsers_audited();
   options.browsers = Browsers::kOnly;

@@ -47,6 +47,8 @@ TEST(CleanJobs, TheGuidesHaveAQuarterOfTheSamplesWithinBounds) {
   }
 }
 
+// Jobs with the same request id are one job. The guides of an image of 128 or 4,096 samples have 32
+// samples, and the guides of an image of 127 samples have 16.
 TEST(CleanJobs, AreTheSameForAllImagesThatNeedThem) {
   JobSpec other = job();
   other.request_id = "fedcba9876543210";

@@ -79,7 +79,7 @@ class Plain {
  public:
   Plain(std::uint64_t blocks, std::uint32_t height) : blocks_(blocks), cells_(blocks * height) {}
 
-  /// Returns true if any block of the node is stored in the row.
+  /// Returns true if any block of the node (an aligned range of 2^k blocks) is stored in the row.
   bool stored(std::uint32_t row, const SampleRange& node) const {
     bool any = false;
     for (std::uint64_t b = node.first_block(); b < node.first_block() + node.blocks(); ++b) {

@@ -50,9 +50,9 @@ TEST(Damage, ReportsOfBandsThatWereNotStoredChangeNothing) {
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
   farm.stored(lease, "a");
-  lose(farm, job, lease.band, "b");
-  lose(farm, job, {lease.band.samples, {0, 2}}, "a");
-  lose(farm, job + 1, lease.band, "a");
+  lose(farm, job, lease.band, "b");                    // "b" has stored nothing
+  lose(farm, job, {lease.band.samples, {0, 2}}, "a");  // the stored band has one row
+  lose(farm, job + 1, lease.band, "a");                // an unknown job
   EXPECT_EQ(farm.job(job).samples_done, 8u * 8);
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
   EXPECT_TRUE(farm.all_records<record::BandLost>().empty());

@@ -1,6 +1,7 @@
-// Efficiency of the scheduler, and the length of a job's last phase, in which some workers have
-// nothing left to do. Sixteen workers are simulated in virtual time; the costs of rows are given.
-// The figures are printed.
+// Efficiency of the scheduler, and the length of a job's last phase (its tail), in which some
+// workers have nothing left to do. The efficiency is the work of the job, divided by the work that
+// the workers could do in the time of the job. Sixteen workers are simulated in virtual time, and
+// the costs of rows are given. The figures are printed.
 
 #include <algorithm>
 #include <cmath>
@@ -61,10 +62,10 @@ BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   std::sort(tails.rbegin(), tails.rend());
   worst.efficiency = efficiencies[seeds / 20];
   worst.tail = tails[seeds / 20];
-  std::printf("%-34s %6.2f s  efficiency %6.2f %%  tail %5.2f %%  %llu bands, %llu for nothing\n",
-              name, worst.seconds, 100 * worst.efficiency, 100 * worst.tail,
-              static_cast<unsigned long long>(worst.bands),
-              static_cast<unsigned long long>(worst.wasted));
+  std::printf(
+      "%-34s %6.2f s  efficiency %6.2f %%  tail %5.2f %%  %llu bands, %llu rendered for nothing\n",
+      name, worst.seconds, 100 * worst.efficiency, 100 * worst.tail,
+      static_cast<unsigned long long>(worst.bands), static_cast<unsigned long long>(worst.wasted));
   return worst;
 }
 

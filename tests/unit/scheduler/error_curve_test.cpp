@@ -60,7 +60,7 @@ TEST(ErrorCurve, FindsTheExponentOfTheFall) {
     EXPECT_NEAR(*samples_until(curve, error(100)), 100, 2) << "between two points";
     EXPECT_NEAR(*cpu_s_until(curve, error(8192)), 2 * 8192, 1e-2);
   }
-  // The exponent is limited to [0.5, 0.75], and 0.5 if it is unknown.
+  // The exponent is limited to [0.5, 0.75]. It is taken as 0.5 if it is unknown.
   EXPECT_EQ(fall_of({point(32, 0.5)}), 0.5);
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t n) { return 1.0 / static_cast<double>(n); })),
             0.75);
@@ -107,7 +107,8 @@ TEST(ErrorCurve, IgnoresPointsOfABlackImage) {
 TEST(ErrorCurve, PredictsNothingWithoutAKnownError) {
   EXPECT_FALSE(samples_until({}, 0.01).has_value());
   EXPECT_FALSE(samples_until({point(32, 0)}, 0.01).has_value()) << "a black image";
-  EXPECT_FALSE(cpu_s_until({{.samples = 32, .estimate = {.relative_rmse = 1}}}, 0.1).has_value());
+  EXPECT_FALSE(cpu_s_until({{.samples = 32, .estimate = {.relative_rmse = 1}}}, 0.1).has_value())
+      << "the CPU time is unknown";
 }
 
 using Measured = std::vector<std::pair<std::uint64_t, double>>;  ///< samples, error

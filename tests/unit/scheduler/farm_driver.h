@@ -1,7 +1,8 @@
 #pragma once
 
 // Helpers of the scheduler's tests. FarmDriver drives a Scheduler by hand: it sends inputs, keeps
-// all records and actions, and checks the invariants after each step. A band is a range of rows and
+// all records and actions, and checks the invariants after each step. An input gives records, which
+// are for the journal, and actions, which the coordinator would do. A band is a range of rows and
 // a range of samples, and a lease gives a band to a worker. An epoch is one run of the coordinator.
 // The glossary of proto/README.md defines further terms.
 
@@ -33,6 +34,7 @@ inline SchedulerOptions slow() {
   return options;
 }
 
+/// Returns a job for submission. `request` is its request id.
 inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t width = 8,
                         std::uint32_t height = 8) {
   JobSpec spec;
@@ -50,6 +52,7 @@ inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t
 inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
   return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
 }
+/// Returns honest_digest() of each row of the band.
 inline std::vector<std::uint64_t> honest_digests(const Band& band) {
   std::vector<std::uint64_t> digests;
   for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {

@@ -17,6 +17,7 @@ std::vector<FrameNumber> parsed(const std::string& text) {
   return frames.value_or(std::vector<FrameNumber>{});
 }
 
+// A range may have a step: "1:10:3" and "1-9x3" have every third frame.
 TEST(FrameNumbers, AreReadAsPeopleWriteThem) {
   EXPECT_THAT(parsed("7"), ElementsAre(7));
   EXPECT_THAT(parsed("1-4"), ElementsAre(1, 2, 3, 4));

@@ -34,7 +34,7 @@ TEST(Jobs, OneWorkerRendersEverySampleOnceAndTheResultIsWritten) {
   EXPECT_EQ(view.samples_done, 100u * 8 * 8);
   EXPECT_EQ(view.samples_per_pixel, 100u);
   EXPECT_EQ(view.workers_used, 1u);
-  EXPECT_EQ(view.counters.rays, 100u * 8);
+  EXPECT_EQ(view.counters.rays, 100u * 8);  // stored() counts a ray for each sample of each row
   EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
 }
 

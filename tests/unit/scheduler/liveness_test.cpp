@@ -58,7 +58,7 @@ TEST(Liveness, AJumpOfTheClockDisconnectsNobody) {
 }
 
 // A lease is revoked after 30 s without progress. A worker that prepares the scene reports a number
-// that grows. In this test it grows from 0 to 17, which counts as progress.
+// that grows. In this test the number grows from 0 to 17, which counts as progress.
 TEST(Liveness, RevokesALeaseWithoutProgress) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -91,7 +91,8 @@ TEST(Liveness, AReconnectKeepsTheLease) {
   farm.hello(1, "a");
   const auto leases = farm.all<action::Lease>();
   const action::Lease lease = leases[0];
-  const Step step = farm.hello(2, "a", 2, {{lease.job, lease.band, lease.lease, "one", false}});
+  const Step step = farm.hello(
+      2, "a", 2, {{lease.job, lease.band, lease.lease, /*epoch=*/"one", /*finished=*/false}});
   ASSERT_EQ(in<action::Close>(step).size(), 1u);
   EXPECT_EQ(in<action::Close>(step)[0].session, 1u);
   ASSERT_FALSE(in<action::Lease>(step).empty());
@@ -293,8 +294,8 @@ TEST(Liveness, ADrainingWorkerKeepsItsLeasesAndGetsNoMore) {
   EXPECT_EQ(farm.scheduler.workers(farm.now)[0].state, "draining");
 }
 
-/// Starts a new worker that renders bands until it is leased one that contains the row, and then is
-/// lost. Returns that band.
+/// Starts a new worker that renders bands until it gets a band with this row. Then the worker is
+/// lost. Returns the band with the row.
 Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
   const std::string instance = std::to_string(session);
   farm.hello(session, instance, 1);
@@ -344,7 +345,7 @@ TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
 }
 
-// A worker may be rendering a revoked lease until a heartbeat no longer names it.
+// A worker may be rendering a revoked lease until its heartbeat no longer names the lease.
 TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
   FarmDriver farm;
   const JobId deadly = farm.submit(test_job("deadly", StopAtSamples{8}, 8, 1));

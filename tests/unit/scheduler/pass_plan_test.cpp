@@ -139,7 +139,9 @@ TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
 TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
-  s.work_rate = 8 * 1600;  // one block of 8 samples of a row of tiles a second
+  // The worker renders one block of 8 samples of a row of tiles a second. A band that is cut by its
+  // samples may take up to two target times: two blocks of a row of tiles, four of half a row.
+  s.work_rate = 8 * 1600;
   s.free.rows.first = 32;
   EXPECT_EQ(size_band(s), (Band{{256, 272}, {32, 48}}));
   s.free.rows.first = 40;
@@ -149,12 +151,13 @@ TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
 TEST(BandSizes, ABlockOfARowOfTilesThatIsTooMuchWorkIsCutByItsRows) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
+  // The row of tiles has six free rows. The worker renders one block of three rows a second.
   s.work_rate = 3 * 800;
-  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 16}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 16}}));  // two target times
   s.work_rate = 2 * 800;
-  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 12}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 12}}));  // six rows would take three target times
   s.work_rate = 1;
-  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 11}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 11}}));  // at least one row
 }
 
 TEST(BandSizes, FitIntoAMessage) {

@@ -1,7 +1,7 @@
-// The reconnect barrier. If the coordinator's own network fails, all workers are lost at once and
-// reconnect one by one. The rows that are free then may have been rendered by a worker that is not
-// back yet. So no worker that was lost gets a new lease until all are back, or until 6 s (the grace
-// time) have passed since the first one came back.
+// The reconnect barrier. If the coordinator's own network fails, all workers fall silent at once
+// and reconnect one by one. The rows that are free then may have been rendered by a worker that is
+// not back yet. So after the first of these workers has come back, no new lease is granted until
+// all are back, or until 6 s (the grace time) have passed.
 
 #include "farm_driver.h"
 
@@ -59,12 +59,15 @@ TEST(ReconnectBarrier, EndsAfterTheGraceTime) {
   EXPECT_TRUE(share_rows(all.farm.all<action::Lease>()[0], all.leases[1]));
 }
 
+// None of the lost workers is back, so the barrier has not begun.
 TEST(ReconnectBarrier, ANewWorkerGetsWorkAtOnce) {
   AllLost all;
   all.farm.hello(3, "c", 1);
   EXPECT_EQ(all.farm.all<action::Lease>().size(), 1u);
 }
 
+// The connection of a killed worker ends at once. The barrier waits only for workers that fell
+// silent.
 TEST(ReconnectBarrier, DoesNotWaitForWorkersThatWereKilled) {
   FarmDriver farm{slow()};
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 32));

@@ -23,8 +23,8 @@ struct Before {
     band.row_digests = honest_digests(band.band);
   }
 
-  /// Returns the restarted scheduler. `with_band`: `band` is on disk. The caller MUST call
-  /// `replayed`, which ends the replay.
+  /// Returns the restarted scheduler, which has replayed (read back) the records of the journal.
+  /// `with_band`: `band` is on disk. The caller MUST call `replayed`, which ends the replay.
   FarmDriver restart(bool with_band = true) const {
     SchedulerOptions options = slow();
     options.epoch = "two";
@@ -207,7 +207,7 @@ TEST(Snapshot, DropsForgottenJobsAndNeverReusesTheirIds) {
 
 TEST(Restart, LeasesNothingBeforeTheFormerWorkersReconnect) {
   const Before before;
-  FarmDriver next = before.restart(false);
+  FarmDriver next = before.restart(/*with_band=*/false);
   next.take(next.scheduler.replayed(next.now));
   next.hello(1, "b");
   EXPECT_TRUE(next.all<action::Lease>().empty());
@@ -218,7 +218,7 @@ TEST(Restart, LeasesNothingBeforeTheFormerWorkersReconnect) {
 
 TEST(Restart, LeasesAfterTheGraceTimeIfFormerWorkersStayAway) {
   const Before before;
-  FarmDriver next = before.restart(false);
+  FarmDriver next = before.restart(/*with_band=*/false);
   next.take(next.scheduler.replayed(next.now));
   next.hello(1, "b");
   next.pass_time(5, {1});
@@ -241,6 +241,8 @@ TEST(Restart, DoesNotLeaseStoredRows) {
   }
 }
 
+// The worker still holds a lease of the run before the restart. The new run adopts this lease: it
+// grants the lease again, with the same id.
 TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
   FarmDriver farm(slow());
   farm.submit(test_job("r1", StopAtSamples{8}));
@@ -263,7 +265,7 @@ TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
 }
 
 // The data folder was reset or restored, so the worker's lease is of another job with this id. The
-// hash of the scene and settings (work_hash) shows it.
+// jobs differ in the hash of the scene and settings (work_hash).
 TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   FarmDriver farm(slow());
   JobSpec spec = test_job("r1", StopAtSamples{8});

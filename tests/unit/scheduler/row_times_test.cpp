@@ -35,8 +35,8 @@ TEST(RowTimes, AverageTwoMeasurements) {
 TEST(RowTimes, ScaleWithTheShareOfSamples) {
   RowTimes times(64);
   times.measure({0, 64}, 64);
-  // A row of tiles has 16 rows. Its share is the number of its samples, divided by the number that
-  // it would have with uniform sampling. The 64 rows use the first four of these shares.
+  // The share of a row of tiles (16 rows) is the number of its samples, divided by the number of
+  // its samples with uniform sampling. The 64 rows use the first four entries of `shares`.
   std::vector<float> shares(64 / 8, 0.5F);
   EXPECT_DOUBLE_EQ(times.of_all() / 2, times.of({0, 64}, shares));
 }

@@ -22,6 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
+/// Returns a sequence of these frames, a list such as "1-20".
 SequenceSpec test_sequence(const std::string& frames, std::uint32_t height = 64) {
   SequenceSpec spec;
   spec.request_id = "a sequence";
@@ -38,12 +39,14 @@ class FrameFarm : public FarmDriver {
  public:
   using FarmDriver::FarmDriver;
 
+  /// Submits a sequence and adds the scenes of all its frames.
   JobId submit_frames(const SequenceSpec& spec) {
     const JobId id = send(input::SubmitSequence{spec}).job;
     add(id, spec.frames);
     return id;
   }
 
+  /// Adds the scenes of these frames to the sequence `id`.
   void add(JobId id, const std::vector<FrameNumber>& frames) {
     std::vector<FrameScene> scenes;
     for (const FrameNumber frame : frames) {
@@ -100,6 +103,7 @@ class FrameFarm : public FarmDriver {
     }
     return out;
   }
+  /// Returns the job that renders a frame of the sequence `id`; 0: none.
   JobId job_of(JobId id, FrameNumber number) const {
     for (const FrameView& frame : frames(id)) {
       if (frame.number == number) {
