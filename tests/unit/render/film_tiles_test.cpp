@@ -58,7 +58,7 @@ BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& 
 // The bands of all passes are added in random order. Each pixel has its own number n of samples.
 // The maximal nodes of n are the fewest nodes that tile the samples [0, n). The value of the pixel
 // must be the sum of these nodes, divided by n.
-TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
+TEST(Film, PixelsAreTheMeansOfTheirOwnSamplesInAnyOrder) {
   const TileGrid grid{19, 18};
   Random random(3);
   for (const std::uint64_t samples : {96, 160, 256}) {

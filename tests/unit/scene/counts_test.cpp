@@ -24,7 +24,7 @@ std::string text_of(const absl::Status& status) {
   return std::string(status.message());
 }
 
-TEST(Counts, LimitMeshes) {
+TEST(Counts, MeshesBeyondALimitAreRefused) {
   EXPECT_TRUE(check_mesh_counts("mesh", kMaxTreeItems, kMaxMeshPositions).ok());
   EXPECT_EQ(text_of(check_mesh_counts("meshes[3]", kMaxTreeItems + 1, 3)),
             "meshes[3]: has 536870912 triangles, a mesh holds at most 536870911: split it into "
@@ -36,7 +36,7 @@ TEST(Counts, LimitMeshes) {
 
 // Loose shapes are those that are not part of a mesh. A quad takes two items of the BVH. Every
 // other shape, and every instance, takes one.
-TEST(Counts, LimitLooseShapes) {
+TEST(Counts, LooseShapesBeyondALimitAreRefused) {
   constexpr std::uint64_t kHalf = kMaxTreeItems / 2;
   EXPECT_TRUE(check_shape_counts("shapes", {.quads = kHalf, .disks = 1}).ok());
   EXPECT_TRUE(check_shape_counts("shapes", {.spheres = kHalf, .instances = kHalf + 1}).ok());
@@ -56,7 +56,7 @@ test::SceneMaker placed_many_times(MaterialId material, test::SceneMaker maker) 
   return maker;
 }
 
-TEST(Counts, LimitLightsBeforeTheyAreBuilt) {
+TEST(Counts, LightsBeyondALimitAreRefusedBeforeTheyAreBuilt) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
   Pool pool(1);
@@ -79,7 +79,7 @@ TEST(Counts, DarkInstancesAreNotCountedAsLights) {
 
 // If one sphere of a group emits light, all spheres of each instance of the group are counted. The
 // last argument of check_light_counts() is the number of further lights.
-TEST(Counts, LimitLightsInGroups) {
+TEST(Counts, LightsInGroupsBeyondALimitAreRefused) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
   Geometry& geometry = maker.scene.geometry;

@@ -97,7 +97,7 @@ Sizing sizing() {
   return s;
 }
 
-TEST(BandSizes, AreTheTargetWhileMuchWorkIsLeft) {
+TEST(BandSizes, FillTheTargetTimeWhileMuchWorkIsLeft) {
   Sizing s = sizing();
   s.free.rows.first = 12;
   EXPECT_EQ(size_band(s), (Band{{0, 8}, {12, 112}}));

@@ -33,7 +33,7 @@ struct AllLost {
   }
 };
 
-TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNothingAnotherHasRendered) {
+TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNoRowsThatAnotherHasRendered) {
   AllLost all;
   ASSERT_EQ(all.leases.size(), 2u);
   all.farm.stored(all.leases[0], "a");
