@@ -40,7 +40,7 @@ struct AuditFarm : FarmDriver {
     in.row_digests[0] += lie;
     in.instance = instance;
     in.render_s = 0.1;
-    in.written = !lease.audit;
+    in.written = !lease.audit;  // the pixels of an audit are only compared
     return send(in);
   }
 
@@ -54,8 +54,8 @@ struct AuditFarm : FarmDriver {
   }
 };
 
-/// A job of one row, rendered by a and then, as its audit, by b. `lie_of_a`, `lie_of_b`: as in
-/// AuditFarm::result. `third`: c is connected as a third machine.
+/// A job of one row. Worker a renders the row, and worker b renders the row again for the audit.
+/// `lie_of_a`, `lie_of_b`: as in AuditFarm::result. `third`: c is connected as a third machine.
 AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third = false) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));

@@ -266,8 +266,8 @@ TEST(Browser, NativeWorkersAuditItsBandsAtASeparateRate) {
   EXPECT_EQ(farm.job(2).state, JobState::kFinishing);
 }
 
-/// A job of one row. The tab t has returned wrong pixels of it, and the native worker a, as its
-/// audit, has returned right pixels.
+/// A job of one row. The tab t has returned wrong pixels of the row. The native worker a has
+/// audited the row, that is, rendered it again, and has returned right pixels.
 BrowserFarm lie_found() {
   BrowserFarm farm;
   farm.submit(one_row());

@@ -211,7 +211,7 @@ TEST(BandFailures, AWorkerThatFailsNowAndThenKeepsItsJob) {
   }
 }
 
-/// Connects a worker, which gets the first band, and disconnects it.
+/// Connects a worker, which gets the first band. Then disconnects the worker.
 void lose_one(FarmDriver& farm, SessionId session, const std::string& instance) {
   farm.hello(session, instance, 1);
   farm.send(input::SessionEnded{session, "connection reset"});
