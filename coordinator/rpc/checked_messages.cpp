@@ -147,8 +147,8 @@ absl::StatusOr<Band> band(const char* field, const farm::Band& message) {
   }
   // A node is an aligned range of a power-of-two number of blocks of 8 samples.
   if (!is_node(band.samples)) {
-    return invalid(field, "samples must be a node of the tree in which samples are summed, are [",
-                   band.samples.first, ", ", band.samples.last, ")");
+    return invalid(field, "samples must be an aligned range of 2^k blocks of ", kBlockSamples,
+                   " samples, are [", band.samples.first, ", ", band.samples.last, ")");
   }
   if (band.rows.first >= band.rows.last || band.rows.last > kMaxSide) {
     return invalid(field, "rows must be a range within [0, ", kMaxSide, "], are [", band.rows.first,

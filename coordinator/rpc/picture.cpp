@@ -24,9 +24,10 @@ absl::StatusOr<MemoryBudget::Share> share_for(Engine& engine, std::uint32_t widt
   if (std::optional<MemoryBudget::Share> share = engine.images().take(bytes)) {
     return *std::move(share);
   }
+  const std::uint64_t mebibytes = (bytes + (1 << 20) - 1) >> 20;  // rounded up
   return absl::ResourceExhaustedError(
-      absl::StrCat("images that are being downloaded leave no memory for this one of ",
-                   (bytes >> 20) + 1, " MiB; try again when a download has ended"));
+      absl::StrCat("images that are being downloaded leave no memory for this one of ", mebibytes,
+                   " MiB; try again when a download has ended"));
 }
 
 /// Reads a part of the result of a finished job, after taking its memory from the budget.

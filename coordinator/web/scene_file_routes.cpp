@@ -45,7 +45,7 @@ absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& b
   web::FileDigests list;
   RETURN_IF_ERROR(read_json(body, list, kMaxListBytes));
   if (list.sha256_size() > kMaxFiles) {
-    return absl::InvalidArgumentError(absl::StrCat("at most ", kMaxFiles, " files"));
+    return absl::InvalidArgumentError(absl::StrCat("a scene has at most ", kMaxFiles, " files"));
   }
   web::FileDigests missing;
   for (const std::string& hex : list.sha256()) {
@@ -218,11 +218,12 @@ absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
   ASSIGN_OR_RETURN(const SceneRequest wanted, scene_request(request));
   web::SceneFiles files;
   RETURN_IF_ERROR(read_json(body, files, kMaxListBytes));
+  if (files.file_size() > kMaxFiles) {
+    return absl::InvalidArgumentError(absl::StrCat("a scene has at most ", kMaxFiles, " files"));
+  }
   const auto is_scene = [&](const auto& file) { return file.name() == files.scene(); };
-  if (files.file_size() > kMaxFiles ||
-      std::none_of(files.file().begin(), files.file().end(), is_scene)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("scene: must be one of the files, at most ", kMaxFiles));
+  if (std::none_of(files.file().begin(), files.file().end(), is_scene)) {
+    return absl::InvalidArgumentError("scene: must be the name of one of the files");
   }
   ASSIGN_OR_RETURN(const auto folder, ScratchFolder::make("files"));
   RETURN_IF_ERROR(lay_out(engine, files, folder->path()));

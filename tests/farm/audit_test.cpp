@@ -42,7 +42,7 @@ TEST_F(AuditedFarm, AMachineThatSendsWrongPixelsIsFoundAndTheImageIsRight) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
   expect_the_image_is_right();
-  EXPECT_NE(farm_.coordinator_log().find("quarantined worker=liar returned other pixels"),
+  EXPECT_NE(farm_.coordinator_log().find("quarantined worker=liar returned pixels that differ"),
             std::string::npos);
   const std::string quarantined = say({"workers", "--json"}).out;
   EXPECT_NE(quarantined.find(R"("state":"quarantined")"), std::string::npos) << quarantined;

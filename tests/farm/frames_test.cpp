@@ -283,7 +283,7 @@ TEST_F(Frames, AreDenoisedAsByRender) {
   EXPECT_TRUE(file_bytes(farm_.path("again.0003.pfm")) == file_bytes(file_of(3)));
   const Finished listed = run(farm_.command({"jobs"}));
   EXPECT_THAT(listed.out, HasSubstr("4 of 4 frames"));
-  EXPECT_THAT(listed.out, HasSubstr("8 guides of clean images"));
+  EXPECT_THAT(listed.out, HasSubstr("8 finished guide images for the denoiser"));
   // The list has a header, one line for all frames, and one line for their guides.
   EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 3) << listed.out;
 }

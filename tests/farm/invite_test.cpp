@@ -52,7 +52,7 @@ TEST_F(Invite, InstallsWorkersThatRenderAndDismissRemovesThem) {
   EXPECT_EQ(submitted.code, 0) << submitted.err;
   const Finished dismissed = dismiss({"anna@desk", "laptop", "never"});
   EXPECT_EQ(dismissed.code, 0) << dismissed.out << dismissed.err;
-  EXPECT_THAT(dismissed.out, HasSubstr("never: there was none"));
+  EXPECT_THAT(dismissed.out, HasSubstr("never: there was no worker"));
   EXPECT_FALSE(has_files("anna@desk"));
   EXPECT_FALSE(has_files("laptop"));
 }

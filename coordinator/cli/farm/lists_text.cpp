@@ -76,8 +76,8 @@ std::vector<std::string> jobs_table(const std::vector<Progress>& jobs) {
   }
   std::vector<std::string> lines = table(rows);
   if (guides > 0) {
-    lines.push_back(absl::StrCat("not listed, because they are done: ", guides,
-                                 guides == 1 ? " guide" : " guides", " of clean images"));
+    lines.push_back(absl::StrCat("not listed: ", guides, " finished guide ",
+                                 guides == 1 ? "image" : "images", " for the denoiser"));
   }
   return lines;
 }

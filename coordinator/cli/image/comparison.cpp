@@ -85,7 +85,9 @@ std::string comparison_text(const Comparison& comparison) {
       bias.relative_bias * 100, bias.t, bias.suspicious_blocks, bias.blocks, bias.worst_t,
       bias.worst_x, bias.worst_y);
   if (errors.not_finite > 0) {
-    absl::StrAppend(&text, "\n", errors.not_finite, " values are not finite and were left out");
+    absl::StrAppend(&text, "\n", errors.not_finite,
+                    errors.not_finite == 1 ? " value is not finite and was left out"
+                                           : " values are not finite and were left out");
   }
   return text;
 }

@@ -101,8 +101,8 @@ absl::StatusOr<Oidn> Oidn::load(const std::string& file) {
   auto library = std::make_shared<Library>(handle);
   if (!library->find_all()) {
     return absl::UnavailableError(
-        "the library OpenImageDenoise lacks functions of its versions 1 and 2; install one of "
-        "these versions, or use --denoise, which needs no library");
+        "the library OpenImageDenoise does not have the functions of version 1 or 2; install "
+        "one of these versions, or use --denoise, which needs no library");
   }
   return Oidn(std::move(library));
 }

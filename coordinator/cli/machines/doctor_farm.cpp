@@ -60,7 +60,8 @@ absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std
     text = farm_join_file(folder);
   }
   if (text.empty()) {
-    return absl::NotFoundError("none is named; --farm STRING-or-FILE, or bandsaw serve here");
+    return absl::NotFoundError(
+        "no farm is named: use --farm STRING-or-FILE, or start one here with: bandsaw serve");
   }
   return link::join_string_from(text);
 }

@@ -155,7 +155,7 @@ result failed "it runs, but has not reached the farm yet: $(tail -n 1 "$dir/log"
 // Needs the variable drain: the seconds in which the worker may finish its bands (the rows that it
 // is rendering). Ends the worker and removes all that kInvite has made.
 constexpr char kDismiss[] = R"sh(
-[ -d "$dir" ] || [ -f "$unit" ] || result ok "there was none"
+[ -d "$dir" ] || [ -f "$unit" ] || result ok "there was no worker"
 is_ours || result failed "$shared"
 end_worker "$drain"
 if [ -f "$unit" ]; then

@@ -20,7 +20,7 @@ std::string choice_of_digest(const WorkerDigests& programs) {
     absl::StrAppend(&names, names.empty() ? "" : ", ", machine_name(machine));
   }
   return absl::StrCat("case $(uname -m) in ", arms, "*) echo \"", kWorkerProgram,
-                      ": the coordinator has none for $(uname -m), only for ", names,
+                      ": the coordinator has no worker program for $(uname -m), only for ", names,
                       "\" >&2; false;; esac");
 }
 

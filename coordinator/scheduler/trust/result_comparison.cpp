@@ -168,8 +168,8 @@ void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStor
   }
   for (const auto& [band, result] : contradicted) {
     quarantine_.impose(result.reporter,
-                       absl::StrCat("returned other pixels than it did before for ", name_of(band),
-                                    " of job ", job.id));
+                       absl::StrCat("returned pixels that differ from its earlier result for ",
+                                    name_of(band), " of job ", job.id));
   }
   while (decide_one(job)) {
   }
@@ -193,8 +193,9 @@ bool ResultComparison::decide_one(Job& job) {
       context_.emit(record::BandAudited{job.id, band, stored_by});
     }
     for (const Audit::Result& wrong : verdict->wrong) {
-      quarantine_.impose(wrong.reporter, absl::StrCat("returned other pixels than two others for ",
-                                                      name_of(band), " of job ", job.id));
+      quarantine_.impose(wrong.reporter,
+                         absl::StrCat("returned pixels that differ from the accepted result for ",
+                                      name_of(band), " of job ", job.id));
     }
     return true;
   }

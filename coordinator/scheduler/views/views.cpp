@@ -213,7 +213,8 @@ std::string Views::refusal(const Worker& worker, const Job& job) const {
   return !Eligibility::fits(worker, job)              ? memory_reason(worker, job)
          : Eligibility::failed_too_often(worker, job) ? "it failed too often"
          : worker.browser ? "native workers must first compare what browsers have rendered"
-                          : "the farm renders in browsers only (--browsers only); it compares";
+                          : "the farm renders in browsers only (--browsers only); this worker only "
+                            "checks their results";
 }
 
 std::vector<WorkerView> Views::absent_quarantined() const {

@@ -46,7 +46,7 @@ TEST(Comparison, NonFiniteValuesAreReported) {
   Image a = image(2, 1, 1);
   a.pixels[0].r = std::nanf("");
   EXPECT_THAT(comparison_text(compare_images(a, a).value()),
-              testing::HasSubstr("1 values are not finite"));
+              testing::HasSubstr("1 value is not finite"));
 }
 
 // SSIM and FLIP count two values as equal if at least one of the two is not finite.

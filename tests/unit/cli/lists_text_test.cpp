@@ -48,7 +48,7 @@ TEST(Lists, GuidesThatAreDoneAreCountedAndNotListed) {
   const Progress done = progress_of(guide);
   EXPECT_THAT(jobs_table({running, done, done}),
               ElementsAre(HasSubstr("job"), HasSubstr("guide: albedo"),
-                          "not listed, because they are done: 2 guides of clean images"));
+                          "not listed: 2 finished guide images for the denoiser"));
   EXPECT_EQ(jobs_json({running, done}).size(), 2u);
 }
 

@@ -44,7 +44,7 @@ TEST(Oidn, TheErrorForAMissingLibraryNamesARemedy) {
   EXPECT_THAT(std::string(missing.message()), HasSubstr("install it, or use --denoise"));
   // This library exists, but it is not OpenImageDenoise.
   EXPECT_THAT(std::string(Oidn::load("libm.so.6").status().message()),
-              HasSubstr("lacks functions"));
+              HasSubstr("does not have the functions of version 1 or 2"));
 }
 
 TEST(Oidn, TheReportSaysThatBitsMayDiffer) {

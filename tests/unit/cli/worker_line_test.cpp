@@ -97,7 +97,8 @@ TEST_F(WorkerLine, NothingIsDownloadedIfThereIsNoProgramForTheArchitecture) {
   digests_.erase(Machine::kAarch64);
   const Finished pasted = paste("aarch64\n");
   EXPECT_EQ(pasted.code, 1);
-  EXPECT_EQ(pasted.err, "bandsaw-worker: the coordinator has none for aarch64, only for x86_64\n");
+  EXPECT_EQ(pasted.err,
+            "bandsaw-worker: the coordinator has no worker program for aarch64, only for x86_64\n");
   EXPECT_FALSE(downloaded());
   EXPECT_TRUE(home_is_empty());
 }
@@ -108,7 +109,7 @@ TEST_F(WorkerLine, TheOutputOfUnameIsNeverExecuted) {
                              "`touch run`\n", "\"; touch run; \"\n", "../../x86_64\n"}) {
     const Finished pasted = paste(output);
     EXPECT_EQ(pasted.code, 1) << output;
-    EXPECT_THAT(pasted.err, HasSubstr("the coordinator has none for")) << output;
+    EXPECT_THAT(pasted.err, HasSubstr("the coordinator has no worker program for")) << output;
     EXPECT_FALSE(downloaded()) << output;
     EXPECT_TRUE(home_is_empty()) << output;
   }

@@ -62,12 +62,12 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   wait_until_left(all - kImageBytes);
 
   // Other images take so much of the budget that one byte is missing for a second download. The
-  // image has 12 MiB, and the message names the next larger whole number.
+  // image has exactly 12 MiB.
   auto others = engine_->images().take(static_cast<std::uint64_t>(all - 2 * kImageBytes + 1));
   ASSERT_TRUE(others);
   const grpc::Status refused = whole_result(job);
   EXPECT_EQ(refused.error_code(), StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(refused.error_message(), HasSubstr("13 MiB"));
+  EXPECT_THAT(refused.error_message(), HasSubstr("of 12 MiB;"));
   EXPECT_THAT(refused.error_message(), HasSubstr("try again when a download has ended"));
   others.reset();
   EXPECT_TRUE(whole_result(job).ok());

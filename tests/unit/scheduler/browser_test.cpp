@@ -223,7 +223,7 @@ TEST(Browser, NativeWorkersOnlyCompareIfOnlyBrowsersAreWanted) {
   EXPECT_EQ(farm.leases(1), 0u);
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
   EXPECT_TRUE(contains(farm.why(job), "no browser is connected")) << farm.why(job);
-  EXPECT_TRUE(contains(farm.worker("worker-a").reason, "it compares"));
+  EXPECT_TRUE(contains(farm.worker("worker-a").reason, "this worker only checks their results"));
   farm.hello_tab(2, "b");
   farm.result(farm.lease(2), "b");
   EXPECT_EQ(farm.leases(1, true), 1u);

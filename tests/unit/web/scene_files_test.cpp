@@ -152,7 +152,7 @@ TEST_F(SceneFilesTest, WrongScenesAreRefused) {
         << name;
   }
   EXPECT_THAT(error_of(post("/api/scenes/files", "{\"scene\": \"box.json\"}")),
-              HasSubstr("must be one of the files"));
+              HasSubstr("scene: must be the name of one of the files"));
   EXPECT_THAT(error_of(post("/api/scenes/files", scene("a.json", hex_of("broken")))),
               HasSubstr("1:1: it is broken"));
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 0);
