@@ -85,7 +85,7 @@ class BANDSAW_PT_sampling(bpy.types.Panel):
 
 # Lists the warnings of the last render: the things that Bandsaw does not show as Blender does.
 class BANDSAW_PT_omitted(bpy.types.Panel):
-    bl_label = "Not Shown as It Is"
+    bl_label = "Not Shown as in Blender"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "render"

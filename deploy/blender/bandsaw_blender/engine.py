@@ -128,7 +128,7 @@ class BandsawEngine(bpy.types.RenderEngine):
     def submit(self, farm, scene, made):
         def on_progress(sent, total):
             self.stop_if_asked()
-            self.update_stats("", f"Sending the scene: {sent >> 20} of {(total >> 20) + 1} MiB")
+            self.update_stats("", f"Sending the scene: {sent >> 20} of {-(-total >> 20)} MiB")
 
         wanted = {"error": scene.bandsaw.error / 100} if scene.bandsaw.stop == "ERROR" else {"samples": scene.bandsaw.samples}
         name = os.path.splitext(os.path.basename(bpy.data.filepath))[0] or "untitled"
