@@ -322,8 +322,8 @@ class PlyReader {
     for (const auto& triangle : out_.mesh.triangles) {
       for (const std::uint32_t index : triangle) {
         if (index >= out_.mesh.positions.size()) {
-          return damaged(
-              absl::StrCat("a triangle has vertex ", index, " of ", out_.mesh.positions.size()));
+          return damaged(absl::StrCat("a triangle refers to vertex ", index,
+                                      "; the number of vertices is ", out_.mesh.positions.size()));
         }
       }
     }
@@ -404,7 +404,7 @@ class PlyReader {
       for (double k = 0; k < count; ++k) {
         ASSIGN_OR_RETURN(const double index, numbers_.take(property.type));
         if (indices && !(index >= 0 && index < std::numeric_limits<std::uint32_t>::max())) {
-          return damaged(absl::StrCat("a face has vertex ", index));
+          return damaged(absl::StrCat("a face refers to vertex ", index, ", which cannot exist"));
         }
         if (indices) {
           corners.push_back(static_cast<std::uint32_t>(index));

@@ -137,9 +137,9 @@ absl::StatusOr<DracoMesh> DracoMesh::decode(absl::string_view bytes, std::string
   for (draco::FaceIndex f(0); f < out.mesh_->num_faces(); ++f) {
     for (const draco::PointIndex& corner : out.mesh_->face(f)) {
       if (corner.value() >= vertices) {
-        return damaged(out.place_,
-                       absl::StrCat("triangle ", f.value(), " of its Draco stream",
-                                    " refers to vertex ", corner.value(), " of ", vertices));
+        return damaged(out.place_, absl::StrCat("triangle ", f.value(), " of its Draco stream",
+                                                " refers to vertex ", corner.value(),
+                                                "; the number of vertices is ", vertices));
       }
     }
   }
@@ -167,8 +167,9 @@ absl::StatusOr<const draco::PointAttribute*> DracoMesh::attribute(
     return damaged(place_, absl::StrCat("its Draco stream has no attribute ", id));
   }
   if (shape.count != vertices()) {
-    return damaged(shape.place, absl::StrCat("count is ", shape.count, ", its Draco stream has ",
-                                             vertices(), " vertices"));
+    return damaged(shape.place,
+                   absl::StrCat("count is ", shape.count, ", but its Draco stream has ", vertices(),
+                                " vertices"));
   }
   if (found->num_components() < 1 || found->num_components() > kMaxComponents) {
     return damaged(place_, absl::StrCat("attribute ", id, " of its Draco stream has ",
@@ -183,7 +184,7 @@ absl::StatusOr<std::vector<float>> DracoMesh::floats(std::size_t id,
   ASSIGN_OR_RETURN(const Dequantizer dequantizer, Dequantizer::of(*from, shape, place_));
   if (dequantizer.components() < shape.components) {
     return damaged(shape.place,
-                   absl::StrCat("has ", shape.components, " components, attribute ", id,
+                   absl::StrCat("has ", shape.components, " components, but attribute ", id,
                                 " of its Draco stream has ", dequantizer.components()));
   }
   std::vector<float> out(shape.values());
@@ -204,9 +205,9 @@ absl::StatusOr<std::vector<std::uint32_t>> DracoMesh::whole_numbers(
   ASSIGN_OR_RETURN(const draco::PointAttribute* from, attribute(id, shape));
   const auto components = static_cast<std::size_t>(from->num_components());
   if (components < shape.components || from->data_type() == draco::DT_FLOAT32) {
-    return damaged(shape.place,
-                   absl::StrCat("needs ", shape.components, " integers for each vertex, attribute ",
-                                id, " of its Draco stream has fewer, or has floats"));
+    return damaged(shape.place, absl::StrCat("needs ", shape.components,
+                                             " integers for each vertex, but attribute ", id,
+                                             " of its Draco stream has fewer, or has floats"));
   }
   std::vector<std::uint32_t> out(shape.values());
   Raw raw{};

@@ -101,8 +101,9 @@ absl::StatusOr<Elements> elements_of(const Json& root, const Json& in, const std
   // No overflow: count <= 2^31, stride < 2^8.
   const std::size_t needed = count == 0 ? 0 : (count - 1) * stride + element_bytes;
   if (offset > bytes.size() || needed > bytes.size() - offset) {
-    return damaged(place, absl::StrCat("needs ", needed, " bytes from byte ", offset,
-                                       " of bufferViews[", view, "], which has ", bytes.size()));
+    return damaged(
+        place, absl::StrCat("needs ", needed, " bytes from byte ", offset, " of bufferViews[", view,
+                            "], which has ", bytes.size(), " bytes"));
   }
   return Elements{bytes.substr(offset), stride};
 }
@@ -132,7 +133,8 @@ absl::Status replace_sparse(const Json& root, const Json& sparse, const Accessor
   for (std::size_t i = 0; i < count; ++i) {
     const auto element = static_cast<std::size_t>(load_integer(places.at(i), component));
     if (element >= shape.count) {
-      return damaged(place, absl::StrCat("replaces element ", element, " of ", shape.count));
+      return damaged(place, absl::StrCat("replaces element ", element,
+                                         "; the number of elements is ", shape.count));
     }
     for (std::size_t c = 0; c < shape.components; ++c) {
       convert(from.at(i) + c * size, shape, values[element * shape.components + c]);

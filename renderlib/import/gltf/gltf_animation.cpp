@@ -28,10 +28,14 @@ absl::StatusOr<std::vector<double>> read_times(const Json& root, std::size_t acc
   }
   ASSIGN_OR_RETURN(const std::vector<float> times, read_floats(root, accessor, shape, buffers));
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!std::isfinite(times[i]) || std::abs(times[i]) > kMaxSeconds ||
-        (i > 0 && !(times[i] > times[i - 1]))) {
-      return damaged(shape.place, absl::StrCat("its times must increase; number ", i, " is ",
-                                               times[i], ", in seconds"));
+    if (!std::isfinite(times[i]) || std::abs(times[i]) > kMaxSeconds) {
+      return damaged(shape.place, absl::StrCat("its times must be finite and within +-1e9 s; time ",
+                                               i, " is ", times[i], " s"));
+    }
+    if (i > 0 && !(times[i] > times[i - 1])) {
+      return damaged(shape.place,
+                     absl::StrCat("its times must increase; time ", i, " is ", times[i],
+                                  " s, and time ", i - 1, " is ", times[i - 1], " s"));
     }
   }
   return std::vector<double>(times.begin(), times.end());
@@ -67,9 +71,9 @@ absl::StatusOr<Curve> read_sampler(const Json& root, const Json& sampler, const 
   const bool fits =
       components == 1 ? shape.count > 0 && shape.count % keys == 0 : shape.count == keys;
   if (shape.components != components || !fits) {
-    return damaged(shape.place, absl::StrCat("does not fit to the ", times.size(), " times of ",
-                                             place, ": it has ", shape.count, " elements of ",
-                                             shape.components, " numbers"));
+    return damaged(shape.place, absl::StrCat("does not match the ", times.size(), " times of ",
+                                             place, ": its count is ", shape.count, ", with ",
+                                             shape.components, " numbers each"));
   }
   ASSIGN_OR_RETURN(const std::vector<float> values, read_floats(root, output, shape, buffers));
   if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) {

@@ -20,8 +20,8 @@ std::vector<std::string> animation_names(const Json& root);
 
 /// Returns animation number `index`, which MUST exist. Its nodes are keyed by their index in the
 /// file. Channels without a node, or with a path that glTF does not define, have no effect (glTF
-/// 2.0, 3.11). Returns INVALID_ARGUMENT if times do not increase, if a number is not finite, or if
-/// the number of values does not fit the number of times.
+/// 2.0, 3.11). Returns INVALID_ARGUMENT if times do not increase or are beyond 1e9 s, if a number
+/// is not finite, or if the number of values does not match the number of times.
 absl::StatusOr<Animation> read_animation(const Json& root, std::size_t index, Buffers& buffers);
 
 }  // namespace bandsaw::gltf

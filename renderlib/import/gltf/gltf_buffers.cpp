@@ -104,7 +104,7 @@ absl::StatusOr<absl::string_view> Buffers::slice(const Json& of, const std::stri
   ASSIGN_OR_RETURN(const absl::string_view bytes, buffer(number));
   if (offset > bytes.size() || size > bytes.size() - offset) {
     return damaged(place, absl::StrCat("ends at byte ", offset + size, " of buffers[", number,
-                                       "], which has ", bytes.size()));
+                                       "], which has ", bytes.size(), " bytes"));
   }
   return bytes.substr(offset, size);
 }

@@ -74,7 +74,7 @@ absl::Status check_index(const Json& index, const Json& of, absl::string_view ta
   }
   return *number < of.size()
              ? absl::OkStatus()
-             : damaged(place, absl::StrCat(target, "[", *number, "] does not exist, there are ",
+             : damaged(place, absl::StrCat(target, "[", *number, "] does not exist; there are ",
                                            of.size()));
 }
 

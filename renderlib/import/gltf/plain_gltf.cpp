@@ -118,7 +118,7 @@ class Rewriter {
       const std::uint32_t used = mesh ? meshes_.joints_of(static_cast<std::size_t>(*mesh)) : 0;
       if (skin != nullptr && used > joints) {
         return damaged(absl::StrCat("nodes[", n, "].skin"),
-                       absl::StrCat("has ", joints, " joints, its mesh uses joint ", used - 1));
+                       absl::StrCat("has ", joints, " joints, but its mesh uses joint ", used - 1));
       }
     }
     return absl::OkStatus();

@@ -182,7 +182,7 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::indices(std::size_t accessor,
   }
   ASSIGN_OR_RETURN(const AccessorShape shape, accessor_shape(root_, accessor, place));
   if (shape.components != 1) {
-    return damaged(shape.place, "holds vectors, indices are single numbers");
+    return damaged(shape.place, "holds vectors, but indices are single numbers");
   }
   ASSIGN_OR_RETURN(const auto values, read_whole_numbers(root_, accessor, shape, buffers_));
   const auto largest = std::max_element(values.begin(), values.end());
@@ -241,8 +241,9 @@ absl::StatusOr<Json> PlainMeshes::primitive(const Json& from, const std::string&
     ASSIGN_OR_RETURN(const std::size_t accessor, whole_of(from, "indices", place));
     ASSIGN_OR_RETURN(const Added added, indices(accessor, place + ".indices"));
     if (added.count > 0 && added.largest >= vertices.value_or(0)) {
-      return damaged(place + ".indices", absl::StrCat("refers to vertex ", added.largest, " of ",
-                                                      vertices.value_or(0)));
+      return damaged(place + ".indices",
+                     absl::StrCat("refers to vertex ", added.largest,
+                                  "; the number of vertices is ", vertices.value_or(0)));
     }
     to["indices"] = added.accessor;
   }

@@ -194,8 +194,8 @@ absl::Status read_triangles(Inflater& in, std::uint64_t count, PlyMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index >= mesh.positions.size()) {
-        return damaged(
-            absl::StrCat("a triangle has vertex ", index, " of ", mesh.positions.size()));
+        return damaged(absl::StrCat("a triangle refers to vertex ", index,
+                                    "; the number of vertices is ", mesh.positions.size()));
       }
     }
   }

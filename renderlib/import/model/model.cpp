@@ -72,11 +72,6 @@ void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& 
 
 // Warns of the animations, scenes, ranges of lights, extensions and options that are not used.
 void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file) {
-  const auto warn = [&](std::size_t count, absl::string_view what) {
-    if (count > 0) {
-      file.warn(absl::StrCat(count, " ", what, " left out"));
-    }
-  };
   const auto quoted = [](std::string* out, const std::string& each) {
     absl::StrAppend(out, "\"", each, "\"");
   };
@@ -86,8 +81,15 @@ void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file)
                                ? absl::StrCat("; \"", file.animation->name, "\" is shown")
                                : "; the rest pose is shown: --frame shows an animation"));
   }
-  warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
-  warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
+  if (file.gltf.scenes > 1) {
+    const std::size_t others = file.gltf.scenes - 1;
+    file.warn(absl::StrCat(others, others == 1 ? " scene" : " scenes", " beside the default one ",
+                           others == 1 ? "is" : "are", " left out"));
+  }
+  if (const std::size_t lights = file.gltf.lights_with_range; lights > 0) {
+    file.warn(absl::StrCat("the range of ", lights, lights == 1 ? " light" : " lights",
+                           " is left out: light reaches any distance"));
+  }
   for (const std::string& extension : file.gltf.ignored) {
     file.warn(absl::StrCat("the extension ", extension, " is left out"));
   }

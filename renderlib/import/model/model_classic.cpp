@@ -51,7 +51,7 @@ double opacity_of(MaterialReader& reader, bool mapped) {
   if (opacity == 0 && !mapped) {
     // The most common mistake of exporters is to exchange transparency and opacity. So an opacity
     // of 0 is taken as 1.
-    reader.unsupported("it is not there at all (opacity 0), which is taken as a mistake");
+    reader.unsupported("its opacity of 0 is taken as a mistake, and it is shown opaque");
     return 1;
   }
   return opacity;

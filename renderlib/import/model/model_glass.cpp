@@ -58,7 +58,7 @@ std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Mater
   const bool is_metal = layers.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
   if (layers.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
       material.alpha.mode != AlphaMode::kOpaque) {
-    reader.unsupported("its volume is left out: what it transmits passes as through a thin pane");
+    reader.unsupported("its volume is left out: light passes through it as through a thin pane");
     return std::nullopt;
   }
   if (has_more_than_glass(reader, material)) {
@@ -109,7 +109,7 @@ void fill_glass(const std::vector<ModelMaterial>& materials, ModelFile& file, Mo
   }
   if (open > 0) {
     file.warn(absl::StrCat("the volume of ", open, " placements of meshes that are not closed is ",
-                           "left out: what they transmit passes as through a thin pane"));
+                           "left out: light passes through them as through a thin pane"));
   }
 }
 

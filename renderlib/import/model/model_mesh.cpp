@@ -69,9 +69,9 @@ absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& m
                                                face.mIndices[2]};
     for (const std::uint32_t corner : corners) {
       if (corner >= mesh.positions.size()) {
-        return absl::InvalidArgumentError(absl::StrCat(title, ": is damaged: triangle ", i,
-                                                       " refers to vertex ", corner, " of ",
-                                                       mesh.positions.size()));
+        return absl::InvalidArgumentError(
+            absl::StrCat(title, ": is damaged: triangle ", i, " refers to vertex ", corner,
+                         "; the number of vertices is ", mesh.positions.size()));
       }
     }
     if (finite(corners[0]) && finite(corners[1]) && finite(corners[2])) {

@@ -247,7 +247,9 @@ class Interpreter {
   void warn_of_missing_ends(const std::string& name) {
     if (graphics_.depth() > 0) {
       builder_.warnings.push_back(
-          absl::StrCat(name, ": ", graphics_.depth(), " AttributeEnd are missing at the end"));
+          absl::StrCat(name, ": ", graphics_.depth(),
+                       graphics_.depth() == 1 ? " AttributeEnd is" : " AttributeEnd are",
+                       " missing at the end"));
     }
   }
 

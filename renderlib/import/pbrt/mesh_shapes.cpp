@@ -51,8 +51,8 @@ absl::StatusOr<std::vector<std::uint32_t>> indices(const Parameters& in, std::si
   for (const double number : numbers) {
     if (!(number >= 0 && number < static_cast<double>(vertices)) || number != std::floor(number)) {
       return error_at(in.find("indices")->place,
-                      absl::StrCat("the index ", number,
-                                   " is that of no point; the number of points is ", vertices));
+                      absl::StrCat("the index ", number, " must be a whole number below ", vertices,
+                                   ", the number of points"));
     }
     out.push_back(static_cast<std::uint32_t>(number));
   }

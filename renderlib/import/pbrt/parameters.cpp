@@ -76,8 +76,8 @@ absl::Status read_values(Tokens& tokens, bool has_texts, Parameter& to) {
   while (true) {
     ASSIGN_OR_RETURN(token, tokens.next());
     if (!token || token->kind == Token::Kind::kOpen) {
-      return error_at(to.place,
-                      absl::StrCat("the values of \"", to.type, " ", to.name, "\" have no end ]"));
+      return error_at(to.place, absl::StrCat("the list of values of \"", to.type, " ", to.name,
+                                             "\" has no closing ]"));
     }
     if (token->kind == Token::Kind::kClose) {
       return absl::OkStatus();

@@ -134,7 +134,7 @@ absl::Status read_normals(const Field& in, const scene::Gltf& from, SceneDraft& 
 
 absl::Status read_alpha(const Field& in, const scene::Gltf& from, SceneDraft& draft, Alpha& to) {
   if (!scene::Gltf::AlphaMode_IsValid(from.alpha_mode())) {
-    return in.error("alpha_mode", absl::StrCat("is no mode: ", from.alpha_mode()));
+    return in.error("alpha_mode", absl::StrCat("has the unknown value ", from.alpha_mode()));
   }
   // AlphaMode and the enum of the scene file have their values in the same order.
   to.mode = static_cast<AlphaMode>(from.alpha_mode());

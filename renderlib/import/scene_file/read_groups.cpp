@@ -78,7 +78,7 @@ absl::StatusOr<Grid> read_grid(const Field& in, const scene::Grid& from) {
   if (from.scale_size() != 0) {
     if (from.scale_size() != 2 ||
         !(from.scale(0) > 0 && from.scale(0) <= from.scale(1) && std::isfinite(from.scale(1)))) {
-      return in.error("scale", "must be [least, most], both > 0");
+      return in.error("scale", "must be [least, most] with 0 < least <= most");
     }
     grid.least = from.scale(0);
     grid.most = from.scale(1);

@@ -198,7 +198,7 @@ absl::StatusOr<Material> read_kind(const Field& in, const scene::Material& from,
       break;
   }
   return in.error(
-      "is of no kind: write diffuse, metal, plastic, dielectric, emissive, gltf or another kind");
+      "has no kind: write diffuse, metal, plastic, dielectric, emissive, gltf or another kind");
 }
 
 absl::Status read_relief(const Field& in, const scene::Material& from, SceneDraft& draft,

@@ -145,7 +145,7 @@ absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, Me
     return *boundary;
   }
   const Mesh& mesh = draft.out.scene.geometry.meshes[index_of(placed.mesh)];
-  return in.error("interior", absl::StrCat("needs closed meshes; one of ", mesh.triangles.size(),
+  return in.error("interior", absl::StrCat("needs closed meshes; a mesh of ", mesh.triangles.size(),
                                            " triangles has ", open_edges(mesh),
                                            " open edges: close its holes, or use a "
                                            "box or a sphere"));

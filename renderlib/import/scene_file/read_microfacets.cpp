@@ -27,10 +27,10 @@ absl::StatusOr<ConductorIndex> read_index(const Field& in, const scene::Conducto
 absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Microfacets& from,
                                              SceneDraft& draft) {
   if (!scene::Microfacets::Distribution_IsValid(from.distribution())) {
-    return in.error("distribution", absl::StrCat("is no distribution: ", from.distribution()));
+    return in.error("distribution", absl::StrCat("has the unknown value ", from.distribution()));
   }
   if (!scene::Microfacets::Masking_IsValid(from.masking())) {
-    return in.error("masking", absl::StrCat("is no masking: ", from.masking()));
+    return in.error("masking", absl::StrCat("has the unknown value ", from.masking()));
   }
   Microfacets to;
   // The enums of Microfacets and of the scene file have their values in the same order.
@@ -84,7 +84,8 @@ absl::StatusOr<Material> read_plastic(const Field& in, const scene::Plastic& fro
   }
   RETURN_IF_ERROR(check_range(in, "index_of_refraction", plastic.index_of_refraction, 1, 5));
   if (plastic.index_of_refraction == 1) {
-    return in.error("index_of_refraction", "must be above 1: it is that of a coat");
+    return in.error("index_of_refraction",
+                    "must be above 1: a coat of index 1 would reflect nothing");
   }
   if (from.has_surface()) {
     ASSIGN_OR_RETURN(plastic.surface, read_microfacets(in.child("surface"), from.surface(), draft));

@@ -116,7 +116,7 @@ absl::Status read_shape(const Field& in, const scene::Shape& from, MaterialId ma
     case scene::Shape::KIND_NOT_SET:
       break;
   }
-  return in.error("is of no kind: write sphere, quad, triangle, box or disk");
+  return in.error("has no kind: write sphere, quad, triangle, box or disk");
 }
 
 /// Appends the shapes, translated by `by`.

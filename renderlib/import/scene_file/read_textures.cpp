@@ -235,7 +235,7 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
   ASSIGN_OR_RETURN(to.over, read_enum<RampTexture::Over>(in, "coordinate", from.coordinate(),
                                                          scene::RampTexture::Coordinate_MAX));
   if (to.over == RampTexture::Over::kTexture) {
-    return in.error("is over nothing: write texture or coordinate");
+    return in.error("has no input: write texture or coordinate");
   }
   return draft.textures.add(std::move(to));
 }

@@ -48,7 +48,7 @@ std::string known_names(const std::vector<FoundCamera>& cameras) {
     absl::StrAppend(out, "\"", name, "\"");
   };
   return cameras.empty()
-             ? "the scene's models bring none"
+             ? "the scene's models have no camera"
              : absl::StrCat("there are ", absl::StrJoin(names_of(cameras), ", ", quoted));
 }
 
@@ -60,7 +60,7 @@ absl::StatusOr<MovingCamera> find_camera(const std::string& name, const SceneDra
     return with_shutter(*found.front(), draft.shutter);
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(found.empty() ? "no model brings a camera" : "several cameras are", " called \"",
+      absl::StrCat(found.empty() ? "no model has a camera" : "several cameras are", " called \"",
                    name, "\"; ", known_names(draft.cameras)));
 }
 

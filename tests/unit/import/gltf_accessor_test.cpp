@@ -172,7 +172,7 @@ TEST_F(GltfAccessors, SkinsMayHaveWeightsOfBytes) {
   EXPECT_FLOAT_EQ(positions[7], 1);
   file.attributes()["JOINTS_0"] = file.add<std::uint8_t>({0, 9, 9, 9, 0, 2, 9, 9, 0, 9, 9, 9}, 4);
   EXPECT_THAT(std::string(file.import(folder_).status().message()),
-              HasSubstr("nodes[0].skin: has 2 joints, its mesh uses joint 2"));
+              HasSubstr("nodes[0].skin: has 2 joints, but its mesh uses joint 2"));
 }
 
 TEST_F(GltfAccessors, MorphTargetsMayBeQuantised) {
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
         // The index is read from the bytes of a position, the float 0.5.
         Damage{REPLACE("/accessors/0/sparse", R"({"count": 1, "indices": {"bufferView": 0,
           "componentType": 5125, "byteOffset": 12}, "values": {"bufferView": 0}})"),
-               "accessors[0].sparse: replaces element 1056964608 of 9"},
+               "accessors[0].sparse: replaces element 1056964608; the number of elements is 9"},
         Damage{REPLACE("/accessors/0/sparse", R"({"count": 100})"), "accessors[0].sparse: has no"},
         Damage{REPLACE("/bufferViews/0/byteLength", "99999999"), "bufferViews[0]: ends at byte"},
         Damage{REPLACE("/bufferViews/0/byteOffset", "9007199254740991"), "bufferViews[0]: ends at"},

@@ -326,12 +326,13 @@ TEST(Draco, TheErrorOfADamagedStreamNamesTheFault) {
         << size;
   }
   EXPECT_THAT(message(with_draco(stream, square.vertices() + 1, 3)),
-              HasSubstr("count is 170, its Draco stream has 169 vertices"));
+              HasSubstr("count is 170, but its Draco stream has 169 vertices"));
   GltfWriter wrong = with_draco(stream, square.vertices(), 3);
   wrong.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"]["NORMAL"] = 7;
   EXPECT_THAT(message(wrong), HasSubstr(place + ": its Draco stream has no attribute 7"));
   wrong.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"]["NORMAL"] = 2;
-  EXPECT_THAT(message(wrong), HasSubstr("has 3 components, attribute 2 of its Draco stream has 2"));
+  EXPECT_THAT(message(wrong),
+              HasSubstr("has 3 components, but attribute 2 of its Draco stream has 2"));
   wrong.primitive()["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = 5;
   EXPECT_THAT(message(wrong), HasSubstr("bufferViews[5] does not exist"));
 }

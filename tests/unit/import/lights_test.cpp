@@ -301,7 +301,7 @@ TEST(ModelLights, RangesOfLightsAreLeftOutWithAWarning) {
   const auto imported = import_scene(write_text(folder, "m.gltf", text));
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_THAT(imported->info.warnings,
-              Contains(HasSubstr("1 ranges of lights (light goes on for ever) are left out")));
+              Contains(HasSubstr("the range of 1 light is left out: light reaches any distance")));
 }
 
 TEST(ModelLights, ArePlacedWithTheirModel) {

@@ -106,7 +106,7 @@ TEST(MediaFile, OpenShapesAreRefusedWithTheRemedy) {
           "shape[0].interior: needs a closed shape, and this one encloses nothing: use a box, "
           "a sphere or a closed model"));
   EXPECT_THAT(message_of(R"(model { file: "open.obj" interior: "milk" })"),
-              HasSubstr("model[0].interior: needs closed meshes; one of 10 triangles has 4 open "
+              HasSubstr("model[0].interior: needs closed meshes; a mesh of 10 triangles has 4 open "
                         "edges: close its holes, or use a box or a sphere"));
 }
 

@@ -150,7 +150,7 @@ TEST(MitsubaSerialized, DamageIsNamed) {
   EXPECT_THAT(message(read_serialized(serialized(~std::uint64_t{0}), 0, false)),
               HasSubstr("is too large"));
   EXPECT_THAT(message(read_serialized(serialized(3, 3), 0, false)),
-              HasSubstr("a triangle has vertex 3 of 3"));
+              HasSubstr("a triangle refers to vertex 3; the number of vertices is 3"));
   EXPECT_THAT(message(read_serialized(serialized(3), 1, false)), HasSubstr("has no mesh 1"));
   EXPECT_THAT(message(read_serialized("\x1c\x04", 0, false)), HasSubstr("ends too early"));
   EXPECT_THAT(message(read_serialized("OBJ file", 0, false)), HasSubstr("is not a *.serialized"));

@@ -89,10 +89,10 @@ TEST_F(ModelCameraNames, ACameraIsSelectedByItsNameOrByTheNameOfItsNode) {
 }
 
 TEST_F(ModelCameraNames, AnErrorListsTheExistingCameras) {
-  EXPECT_THAT(error("back"), HasSubstr("m.gltf: no model brings a camera called \"back\"; there "
+  EXPECT_THAT(error("back"), HasSubstr("m.gltf: no model has a camera called \"back\"; there "
                                        "are \"left\", \"right\", \"tower\", \"top\""));
   GltfTriangle().write(folder_, "none.gltf");
-  EXPECT_THAT(error("back", "none.gltf"), HasSubstr("the scene's models bring none"));
+  EXPECT_THAT(error("back", "none.gltf"), HasSubstr("the scene's models have no camera"));
 }
 
 TEST_F(ModelCameraNames, AreListedByInfo) {
@@ -195,7 +195,7 @@ TEST(ColladaCameras, CamerasWithoutAValidLensAreLeftOut) {
 TEST_F(ModelCameraNames, AModelInAGroupHasNoCameras) {
   write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
 group { name: "g" model { file: "m.gltf" } } instance { of: "g" })");
-  EXPECT_THAT(error("left", "s.textproto"), HasSubstr("the scene's models bring none"));
+  EXPECT_THAT(error("left", "s.textproto"), HasSubstr("the scene's models have no camera"));
 }
 
 }  // namespace

@@ -75,9 +75,10 @@ TEST_F(Obj, OpacityBecomesAlphaAndAnOpacityOfZeroIsIgnored) {
   EXPECT_EQ(glass.alpha.value.factor, 0.25);
   const ImportedScene gone = read("Kd 0.5 0.5 0.5\nd 0\n");
   EXPECT_TRUE(std::holds_alternative<Diffuse>(gone.scene.materials[0].kind));
-  EXPECT_THAT(gone.info.warnings,
-              Contains("m.obj: material \"a\": it is not there at all (opacity 0), which is taken "
-                       "as a mistake"));
+  EXPECT_THAT(
+      gone.info.warnings,
+      Contains(
+          "m.obj: material \"a\": its opacity of 0 is taken as a mistake, and it is shown opaque"));
 }
 
 TEST_F(Obj, AnOpacityMapIsReadFromItsBrightness) {

@@ -361,7 +361,8 @@ TEST_F(Gltf, ASkinnedMeshStandsInItsRestPose) {
   EXPECT_EQ(geometry.instances[0].to_world, Transform{});
   EXPECT_THAT(geometry.meshes[0].positions,
               ElementsAre(ElementsAre(0, 1, 0), ElementsAre(1, 1, 2), ElementsAre(0, 2, 0)));
-  EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("1 scenes beside the default one")));
+  EXPECT_THAT(imported->info.warnings,
+              Contains(HasSubstr("1 scene beside the default one is left out")));
 }
 
 // Two triangles have one bone each. Both bones have the same name.

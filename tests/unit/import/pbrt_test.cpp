@@ -110,7 +110,7 @@ TEST(Pbrt, AnImportedFileChangesNoTransformOrMaterialAfterIt) {
   EXPECT_THAT(converted->scene.shape(1).sphere().center(), ElementsAre(0, 3, 0));
   EXPECT_EQ(converted->scene.shape(1).material(), "default");
   EXPECT_EQ(converted->scene.shape(2).material(), "glass");
-  EXPECT_THAT(converted->warnings, ElementsAre("part.pbrt: 1 AttributeEnd are missing at the end"));
+  EXPECT_THAT(converted->warnings, ElementsAre("part.pbrt: 1 AttributeEnd is missing at the end"));
   write_text(dir, "part.pbrt", "AttributeEnd");
   EXPECT_THAT(
       std::string(
@@ -453,17 +453,17 @@ TEST(Pbrt, ErrorsNameTheLine) {
   EXPECT_THAT(
       error_of("WorldBegin\nShape \"trianglemesh\" \"integer indices\" [0 1 9] \"point3 P\" "
                "[0 0 0 1 0 0 0 1 0]"),
-      HasSubstr("the index 9 is that of no point"));
+      HasSubstr("the index 9 must be a whole number below 3, the number of points"));
 }
 
 TEST(Pbrt, TruncatedScenesGiveAnErrorOrAWarning) {
   EXPECT_EQ(error_of("WorldBegin\nShape \"sphere\" \"float radius\" [ 1"),
-            "s.pbrt:2: the values of \"float radius\" have no end ]");
+            "s.pbrt:2: the list of values of \"float radius\" has no closing ]");
   EXPECT_EQ(error_of("WorldBegin\nShape \"sph"), "s.pbrt:2: the string has no end on its line");
   EXPECT_THAT(error_of("WorldBegin\nTranslate 1 2"), HasSubstr("s.pbrt:2: "));
   EXPECT_THAT(error_of("WorldBegin\nShape"), HasSubstr("s.pbrt:2: "));
   EXPECT_THAT(warnings_of("WorldBegin\nAttributeBegin\nShape \"sphere\""),
-              ElementsAre(HasSubstr("1 AttributeEnd are missing at the end")));
+              ElementsAre(HasSubstr("1 AttributeEnd is missing at the end")));
 }
 
 TEST(Pbrt, TransformsMustBeFiniteAndRegular) {

@@ -269,11 +269,10 @@ TEST(ModelCamera, ErrorsListTheExistingCameras) {
   const auto message = [&](const std::string& text) {
     return std::string(import_scene(write_text(folder, "s.textproto", text)).status().message());
   };
-  EXPECT_THAT(
-      message("camera { use: \"back\" } model { file: \"m.gltf\" }"),
-      HasSubstr("camera.use: no model brings a camera called \"back\"; there are \"front\", "
-                "\"plan\""));
-  EXPECT_THAT(message("camera { use: \"back\" }"), HasSubstr("the scene's models bring none"));
+  EXPECT_THAT(message("camera { use: \"back\" } model { file: \"m.gltf\" }"),
+              HasSubstr("camera.use: no model has a camera called \"back\"; there are \"front\", "
+                        "\"plan\""));
+  EXPECT_THAT(message("camera { use: \"back\" }"), HasSubstr("the scene's models have no camera"));
   EXPECT_THAT(message("camera { use: \"front\" vertical_fov: 3 } model { file: \"m.gltf\" }"),
               HasSubstr("camera.use: write use, or position,"));
   EXPECT_THAT(message("camera { use: \"plan\" aperture: 3 } model { file: \"m.gltf\" }"),

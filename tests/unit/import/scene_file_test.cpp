@@ -186,7 +186,7 @@ const std::vector<Wrong> kWrong = {
      "s.textproto:3:30: shape[0].material: no material is called \"wite\"; did you mean "
      "\"white\"?"},
     {"no_kind", R"(shape { material: "white" })",
-     "s.textproto:3:1: shape[0]: is of no kind: write sphere, quad, triangle, box or disk"},
+     "s.textproto:3:1: shape[0]: has no kind: write sphere, quad, triangle, box or disk"},
     {"flat_quad",
      R"(shape { material: "white" quad { corner: [0, 0, 0] u: [1, 0, 0] v: [-2, 0, 0] } })",
      "s.textproto:3:65: shape[0].quad.v: must not be parallel to u"},
@@ -197,7 +197,7 @@ const std::vector<Wrong> kWrong = {
     {"nameless_material", R"(material { metal { } })",
      "s.textproto:3:1: material[1].name: is required"},
     {"kindless_material", R"(material { name: "x" })",
-     "s.textproto:3:1: material[1]: is of no kind: write diffuse, metal, plastic, "
+     "s.textproto:3:1: material[1]: has no kind: write diffuse, metal, plastic, "
      "dielectric, emissive, gltf or another kind"},
     {"reflectance", R"(material { name: "x" diffuse { color { rgb: [0.5, 1.7, 0] } } })",
      "s.textproto:3:40: material[1].diffuse.color.rgb[1]: must lie in [0, 1], is 1.7"},

@@ -136,7 +136,7 @@ TEST(SceneTexture, ErrorsNamePlaceAndField) {
   EXPECT_THAT(message("noise { octaves: 17 }"), HasSubstr("noise.octaves: must lie in [1, 16]"));
   EXPECT_THAT(message("noise { high { rgb: [2, 0, 0] } }"), HasSubstr("noise.high"));
   EXPECT_THAT(message("ramp { stop { at: 0 color: [0, 0, 0] } }"),
-              HasSubstr("ramp: is over nothing: write texture or coordinate"));
+              HasSubstr("ramp: has no input: write texture or coordinate"));
   EXPECT_THAT(message("ramp { coordinate: COORDINATE_U }"),
               HasSubstr("ramp.stop: must have 1 to 256 stops; it has 0"));
   EXPECT_THAT(

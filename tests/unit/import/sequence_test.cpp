@@ -97,13 +97,24 @@ TEST_F(Sequence, TracksSetFieldsToTheirValuesInTheMiddleOfTheExposure) {
             key { time: 0 value: [0, 1, 0] } key { time: 4 value: [8, 1, 0] } }
     track { field: "material[\"lamp\"].emissive.radiance.rgb" interpolation: INTERPOLATION_STEP
             key { time: 0 value: [1, 2, 3] } key { time: 2.1 value: [4, 5, 6] } })";
-  // Frame 20 is at time 2. The exposure lasts from 2 to 2.5.
+  const auto radiance_of_lamp = [](const SceneDescription& scene) {
+    const Sphere& ball = scene.geometry.spheres.at(0);
+    const auto& lamp = std::get<Emissive>(scene.materials[index_of(ball.material)].kind);
+    return std::get<ConstantTexture>(scene.textures[index_of(lamp.radiance)]).value;
+  };
+  // Frame 20 is at time 2. The exposure lasts from 2 to 2.5, so its middle is at 2.25.
   const ImportedScene imported = read_text(text, frame(20));
   const auto& light = std::get<PointLight>(imported.scene.lights.at(0));
   expect_near(light.position, {4.5, 1, 0});
+  // A step track has the value of the last key that is not after the time. At 2.25 this is the key
+  // of time 2.1. At the start of the exposure it would be the key of time 0.
+  EXPECT_EQ(radiance_of_lamp(imported.scene), (Rgb{4, 5, 6}));
   EXPECT_EQ(shutter_of(imported.scene.camera), (Shutter{2, 2.5}));
   const ImportedScene first = read_text(text, {});
   expect_near(std::get<PointLight>(first.scene.lights.at(0)).position, {0.5, 1, 0});
+  // Without a frame the exposure lasts from 0 to 0.5. At its middle a step track still has the
+  // value of its first key.
+  EXPECT_EQ(radiance_of_lamp(first.scene), (Rgb{1, 2, 3}));
 }
 
 TEST_F(Sequence, TheCameraMovesDuringTheExposure) {
@@ -393,9 +404,14 @@ TEST_F(Sequence, DamagedAnimationsAreErrors) {
     file.root["animations"] = Json::array({walk});
     return std::string(import_scene(file.write(folder_, "m.gltf"), frame(0)).status().message());
   };
-  EXPECT_THAT(with({0, 0}, {0, 0, 0, 1, 1, 1}, "LINEAR"), HasSubstr("its times must increase"));
-  EXPECT_THAT(with({0, 1}, {0, 0, 0}, "LINEAR"), HasSubstr("does not fit to the 2 times"));
-  EXPECT_THAT(with({0, 1}, {0, 0, 0, 1, 1, 1}, "CUBICSPLINE"), HasSubstr("does not fit"));
+  EXPECT_THAT(with({0, 0}, {0, 0, 0, 1, 1, 1}, "LINEAR"),
+              HasSubstr("its times must increase; time 1 is 0 s, and time 0 is 0 s"));
+  for (const float time : {2e9F, INFINITY, NAN}) {
+    EXPECT_THAT(with({0, time}, {0, 0, 0, 1, 1, 1}, "LINEAR"),
+                HasSubstr("its times must be finite and within +-1e9 s; time 1 is "));
+  }
+  EXPECT_THAT(with({0, 1}, {0, 0, 0}, "LINEAR"), HasSubstr("does not match the 2 times"));
+  EXPECT_THAT(with({0, 1}, {0, 0, 0, 1, 1, 1}, "CUBICSPLINE"), HasSubstr("does not match"));
   EXPECT_THAT(with({0, 1}, {0, 0, 0, NAN, 1, 1}, "LINEAR"), HasSubstr("not finite"));
   EXPECT_THAT(with({0, 1}, {0, 0, 0, 1, 1, 1}, "BEZIER"), HasSubstr("\"BEZIER\" is not LINEAR"));
 }
