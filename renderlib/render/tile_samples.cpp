@@ -68,8 +68,8 @@ absl::StatusOr<TileSamples> TileSamples::from_numbers(absl::Span<const std::uint
     if (samples.samples() > 0 && (!is_node(samples) || samples.last > kMaxSamples)) {
       return absl::InvalidArgumentError(
           absl::StrCat("tiles: half tile ", i, " takes samples [", samples.first, ", ",
-                       samples.last, "), must be none or a power of two of blocks of ",
-                       kBlockSamples, ", aligned, below ", kMaxSamples));
+                       samples.last, "); must be empty, or an aligned range of 2^k blocks of ",
+                       kBlockSamples, " samples below ", kMaxSamples));
     }
     tiles.set(i, samples);
   }

@@ -75,8 +75,8 @@ absl::Status check_shapes(const std::string& where, const Shapes& shapes, std::s
 absl::Status check_one_per_position(const std::string& field, std::size_t count,
                                     std::size_t positions) {
   if (count != 0 && count != positions) {
-    return invalid(field,
-                   absl::StrCat("must be none or one a position (", positions, "), are ", count));
+    return invalid(field, absl::StrCat("must have one entry for each of the ", positions,
+                                       " positions, or none; has ", count));
   }
   return absl::OkStatus();
 }
@@ -119,12 +119,13 @@ absl::Status check_mesh(const std::string& field, const Mesh& mesh, MeshVertices
       check_one_per_position(field + ".normals_at_close", mesh.normals_at_close.size(), vertices));
   if (!mesh.normals_at_close.empty() && (mesh.normals.empty() || mesh.positions_at_close.empty())) {
     return invalid(field + ".normals_at_close",
-                   "must be none without normals or positions_at_close");
+                   "must be empty unless the mesh has normals and positions_at_close");
   }
   for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
     for (const float channel : mesh.colors[i]) {
       if (channel < 0) {
-        return invalid(item(field + ".colors", i), absl::StrCat("must be >= 0, has ", channel));
+        return invalid(item(field + ".colors", i),
+                       absl::StrCat("must be >= 0, one channel is ", channel));
       }
     }
   }
@@ -178,13 +179,14 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
   }
   RETURN_IF_ERROR(check_placement(field + ".placement", frame.placement));
   if (frame.keys.empty()) {
-    return invalid(field + ".keys", "must be at least one");
+    return invalid(field + ".keys", "must have at least one key");
   }
   for (std::size_t i = 0; i < frame.keys.size(); ++i) {
     const Key& key = frame.keys[i];
     const std::string name = absl::StrCat(field, ".keys[", i, "]");
     if (!(std::abs(key.time) <= kMaxTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
-      return invalid(name + ".time", absl::StrCat("must be within +-1e9 and rise, is ", key.time));
+      return invalid(name + ".time",
+                     absl::StrCat("must be within +-1e9 and after the key before, is ", key.time));
     }
     RETURN_IF_ERROR(check_placement(name + ".at", key.at));
     if (!decompose(key.at)) {

@@ -220,7 +220,8 @@ struct CheckKind {
     RETURN_IF_ERROR(check_refraction(field, m.index_of_refraction));
     RETURN_IF_ERROR(check_color(field + ".specular", m.specular, 1));
     if (m.index_of_refraction == 1) {
-      return invalid(field + ".index_of_refraction", "must be above 1: it is that of a coat");
+      return invalid(field + ".index_of_refraction",
+                     "must be above 1: a coat of index 1 would reflect nothing");
     }
     if (!m.surface.isotropic()) {
       return invalid(field + ".surface", "the coat of plastic is isotropic");

@@ -135,7 +135,7 @@ TEST(TileSamples, InvalidNumbersAreRefused) {
   EXPECT_THAT(refused({0, 16, 0}, {8, 24}),
               HasSubstr("rows [8, 24) of width 16 need 8 numbers or none, are 3"));
   EXPECT_THAT(refused({0, 16, 16, 32}, {0, 1}),
-              HasSubstr("half tile 1 takes samples [16, 48), must be none or a power of two"));
+              HasSubstr("half tile 1 takes samples [16, 48); must be empty, or an aligned range"));
   EXPECT_THAT(refused({1u << 30, 16, 0, 0}, {0, 1}), HasSubstr("below 1073741824"));
   EXPECT_THAT(refused({0, 0, 0xffffffff, 0xffffffff}, {0, 1}), HasSubstr("half tile 1"));
 }

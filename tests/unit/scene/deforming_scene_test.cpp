@@ -157,13 +157,13 @@ TEST(DeformingScene, InvalidPositionsAreRefusedWithTheField) {
   EXPECT_EQ(error_after([](auto&) {}), "");
   EXPECT_THAT(
       error_after([](auto& s) { s.geometry.meshes.change(1).positions_at_close.pop_back(); }),
-      HasSubstr("meshes[1].positions_at_close: must be none or one a position"));
+      HasSubstr("meshes[1].positions_at_close: must have one entry for each"));
   EXPECT_THAT(error_after([](auto& s) { s.geometry.meshes.change(0).normals_at_close.resize(2); }),
-              HasSubstr("meshes[0].normals_at_close: must be none or one a position"));
+              HasSubstr("meshes[0].normals_at_close: must have one entry for each"));
   EXPECT_THAT(error_after([](auto& s) { s.geometry.meshes.change(0).normals.clear(); }),
-              HasSubstr("meshes[0].normals_at_close: must be none without normals"));
+              HasSubstr("meshes[0].normals_at_close: must be empty unless the mesh has normals"));
   EXPECT_THAT(error_after([](auto& s) { s.geometry.meshes.change(0).positions_at_close.clear(); }),
-              HasSubstr("meshes[0].normals_at_close: must be none without normals"));
+              HasSubstr("meshes[0].normals_at_close: must be empty unless the mesh has normals"));
   // Two corners of the boundary move apart: it is closed when the shutter opens, and open
   // afterwards.
   EXPECT_THAT(error_after([](auto& s) {

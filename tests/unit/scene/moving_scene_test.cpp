@@ -126,7 +126,7 @@ TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
   EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.frames[0].keys[1].time = 0; }),
               HasSubstr("frames[0].keys[1].time"));
   EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.frames[0].keys.clear(); }),
-              HasSubstr("frames[0].keys: must be at least one"));
+              HasSubstr("frames[0].keys: must have at least one key"));
   EXPECT_THAT(message_after_moving([](auto& s) {
                 s.geometry.frames[0].keys[1] =
                     Key(2, rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 9));

@@ -62,9 +62,9 @@ TEST(Scene, S9_ErrorsNameFieldRangeAndValue) {
   EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).triangles[3][1] = 9; }),
             "meshes[0].triangles[3]: must be indices below 9, one is 9");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).uvs.pop_back(); }),
-            "meshes[0].uvs: must be none or one a position (9), are 8");
+            "meshes[0].uvs: must have one entry for each of the 9 positions, or none; has 8");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).normals.resize(2); }),
-            "meshes[0].normals: must be none or one a position (9), are 2");
+            "meshes[0].normals: must have one entry for each of the 9 positions, or none; has 2");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.instances[0].mesh = MeshId{1}; }),
             "instances[0].mesh: must be below 1, is 1");
   EXPECT_THAT(message_after([](auto& s) {
@@ -125,8 +125,9 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
   Material glass = Dielectric{};
   glass.one_sided = true;
   EXPECT_EQ(with(glass), "materials[1].one_sided: a material that transmits light has two sides");
-  EXPECT_EQ(with(Plastic{TextureId{0}, 1}),
-            "materials[1].index_of_refraction: must be above 1: it is that of a coat");
+  EXPECT_EQ(
+      with(Plastic{TextureId{0}, 1}),
+      "materials[1].index_of_refraction: must be above 1: a coat of index 1 would reflect nothing");
   EXPECT_EQ(with(Plastic{TextureId{0}, 1.5, {.alpha_u = 0.5}}),
             "materials[1].surface: the coat of plastic is isotropic");
   EXPECT_EQ(with(Conductor{ConductorIndex{{1, 0, 1}, {1, 1, 1}}}),
@@ -152,7 +153,7 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
               s.geometry.meshes.change(0).colors.resize(9, {1, 1, 1});
               s.geometry.meshes.change(0).colors[2] = {0, -0.5f, 0};
             }),
-            "meshes[0].colors[2]: must be >= 0, has -0.5");
+            "meshes[0].colors[2]: must be >= 0, one channel is -0.5");
   ImageTexture image;
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
             "textures[0].width: must be in [1, 65536], is 0");
