@@ -3,8 +3,10 @@
 // Collects and names the files (meshes and images) that the converter of a foreign scene makes. A
 // foreign scene is a scene of another renderer.
 
+#include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "absl/strings/string_view.h"
 

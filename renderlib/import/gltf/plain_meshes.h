@@ -3,10 +3,13 @@
 // Rewrites the meshes of a glTF file so that their arrays lie in one buffer and have one type each:
 // attributes are floats, except for joints, which are 16-bit integers; indices are 32-bit.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/gltf/draco_mesh.h"

@@ -2,6 +2,7 @@
 
 // Virtual time and random numbers of a simulated farm. The same seed gives the same run.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>

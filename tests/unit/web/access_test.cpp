@@ -175,14 +175,13 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
-  inet_pton(AF_INET, "127.0.0.2", &address.sin_addr);
+  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
   for (int i = 0; i < 40; ++i) {
     const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in from{};
     from.sin_family = AF_INET;
     inet_pton(AF_INET, "127.0.0.2", &from.sin_addr);
     ASSERT_EQ(bind(client, reinterpret_cast<sockaddr*>(&from), sizeof(from)), 0);
-    inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
     ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
     send(client, "GET / HT", 8, MSG_NOSIGNAL);  // fails if the server has closed the connection
     sockets.push_back(client);
