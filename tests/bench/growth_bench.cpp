@@ -232,7 +232,12 @@ void write_json(const std::vector<Grown>& all, double speedup, const std::string
       JsonObject row;
       row.number("n", size);
       for (const Column& column : kColumns) {
-        row.known_number(column.name, figures.*column.figure * column.unit);
+        const double value = figures.*column.figure * column.unit;
+        if (value > 0) {
+          row.number(column.name, value);
+        } else {
+          row.unknown(column.name);  // it was not measured
+        }
       }
       rows.push_back(row);
     }
