@@ -13,6 +13,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "renderlib/denoise/maps.h"
 #include "renderlib/denoise/prepare.h"
@@ -54,6 +57,8 @@ struct RowSums {
   double raw = 0;            ///< estimated squared errors as rendered
   double clean = 0;          ///< estimated squared errors of the result
   double variance = 0;       ///< the parts of `clean` that are noise
+  double bias = 0;           ///< common_bias() of neighbours
+  std::uint64_t pairs = 0;   ///< number of pairs of neighbours in `bias`, times 3 channels
 
   void add(const RowSums& other) {
     pixels += other.pixels;
@@ -61,6 +66,8 @@ struct RowSums {
     raw += other.raw;
     clean += other.clean;
     variance += other.variance;
+    bias += other.bias;
+    pairs += other.pairs;
   }
 };
 
@@ -111,7 +118,9 @@ class Selection {
   }
   bool valid(int x, int y) const { return planes_.valid.at(x, plane_row(y)) > 0; }
   /// Returns 1 / (brightness^2 + offset) for each pixel, so that relative errors are compared. The
-  /// offset is 3 % of the squared mean of the image, so that dark pixels do not dominate.
+  /// brightness is that of the filtered pixel, or that of the darker half of the rendered pixel if
+  /// this is larger: a bright detail that both halves show must not count as noise. The offset is 3
+  /// % of the squared mean of the image, so that dark pixels do not dominate.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
   /// Sets shares_: at each pixel, chooses the candidate with the least estimated error, and smooths
@@ -124,9 +133,17 @@ class Selection {
   /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves,
   /// weighted by their shares of the samples.
   Rgb value_of(int x, int y) const;
-  /// Adds a pixel to the sums if it has finite parts. If the filters did not use it, because it is
-  /// negative or too bright, it is added as it was rendered.
+  /// The three channels of a pixel.
+  using PixelInParts = std::array<InParts<double>, 3>;
+  /// Returns a pixel in both parts; std::nullopt if it has no finite parts. If the filters did not
+  /// use the pixel, because it is negative or too bright, the filtered values are those as
+  /// rendered.
+  std::optional<PixelInParts> in_parts(int x, int y) const;
+  /// Adds a pixel to the sums if it has finite parts.
   void add_pixel(int x, int y, RowSums& sums) const;
+  /// Adds the common bias of a pixel and its neighbours to the right and below, if they have finite
+  /// parts. A pixel that stays as it was rendered has no bias.
+  void add_bias(int x, int y, RowSums& sums) const;
 
   const Strip& strip_;
   const FitInput& planes_;
@@ -139,11 +156,15 @@ class Selection {
 Map Selection::scales() const {
   const float mean = strip_.means.brightness;
   Map scales(size_.pixels());
-  each([&](int, int, std::size_t i) {
-    float bright = 0;
-    for (const auto& part : strip_.fits.back().halves) {
-      bright += ((part[0][i] + part[1][i]) + part[2][i]) / 6;
+  each([&](int x, int y, std::size_t i) {
+    float filtered = 0;
+    float darker = std::numeric_limits<float>::max();
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto& part = strip_.fits.back().halves[h];
+      filtered += ((part[0][i] + part[1][i]) + part[2][i]) / 6;
+      darker = std::min(darker, ((half(h, 0, x, y) + half(h, 1, x, y)) + half(h, 2, x, y)) / 3);
     }
+    const float bright = std::max(filtered, darker);
     scales[i] = 1 / (bright * bright + 0.03f * mean * mean + 1e-30f);
   });
   return scales;
@@ -161,7 +182,7 @@ Map Selection::error_of(std::size_t candidate, const Map& scale) const {
       const float second = half(1, c, x, y);
       const float a = candidate == 0 ? first : strip_.fits[candidate - 1].halves[0][c][i];
       const float b = candidate == 0 ? second : strip_.fits[candidate - 1].halves[1][c][i];
-      sum += squared_error(a, b, first, second, share);
+      sum += squared_error(InParts<float>{a, b, first, second, share});
     }
     error[i] = valid(x, y) ? sum * scale[i] : 0;
   });
@@ -219,26 +240,64 @@ Rgb Selection::value_of(int x, int y) const {
   return {value(0), value(1), value(2)};
 }
 
-void Selection::add_pixel(int x, int y, RowSums& sums) const {
+std::optional<Selection::PixelInParts> Selection::in_parts(int x, int y) const {
   const std::size_t at = in_image(x, y);
   if (!has_finite_parts(strip_.input, at)) {
-    return;
+    return std::nullopt;
   }
   const bool rendered = is_rendered(x, y);
-  const float first_share = strip_.input.first_share[at];
-  const double share = first_share;
-  ++sums.pixels;
+  const float share = strip_.input.first_share[at];
+  PixelInParts pixel;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float mean = channel(strip_.input.mean.pixels[at], c);
     const float of_first = channel(strip_.input.first.pixels[at], c);
     const double first = of_first;
-    const double second = second_value(mean, of_first, first_share);
-    const double a = rendered ? first : mixed(x, y, 0, c);
-    const double b = rendered ? second : mixed(x, y, 1, c);
-    sums.clean += squared_error(a, b, first, second, share);
-    sums.variance += share * (1 - share) * ((a - b) * (a - b));
-    sums.raw += share * (1 - share) * ((first - second) * (first - second));
-    sums.value += mean;
+    const double second = second_value(channel(strip_.input.mean.pixels[at], c), of_first, share);
+    pixel[c] = {.a = rendered ? first : mixed(x, y, 0, c),
+                .b = rendered ? second : mixed(x, y, 1, c),
+                .first = first,
+                .second = second,
+                .share = share};
+  }
+  return pixel;
+}
+
+void Selection::add_pixel(int x, int y, RowSums& sums) const {
+  const std::optional<PixelInParts> pixel = in_parts(x, y);
+  if (!pixel) {
+    return;
+  }
+  ++sums.pixels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const InParts<double>& value = (*pixel)[c];
+    const double apart = value.first - value.second;
+    sums.clean += squared_error(value);
+    sums.variance += value.variance();
+    sums.raw += value.share * (1 - value.share) * (apart * apart);
+    sums.value += channel(strip_.input.mean.pixels[in_image(x, y)], c);
+  }
+}
+
+void Selection::add_bias(int x, int y, RowSums& sums) const {
+  const std::optional<PixelInParts> pixel = in_parts(x, y);
+  if (!pixel) {
+    return;
+  }
+  for (const auto& [right, below] : {std::pair{1, 0}, std::pair{0, 1}}) {
+    const int u = x + right;
+    const int v = y + below;
+    if (u >= size_.width || v >= size_.height) {
+      continue;
+    }
+    const std::optional<PixelInParts> other = in_parts(u, v);
+    if (!other) {
+      continue;
+    }
+    sums.pairs += 3;
+    if (!is_rendered(x, y) && !is_rendered(u, v)) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        sums.bias += common_bias((*pixel)[c], (*other)[c]);
+      }
+    }
   }
 }
 
@@ -254,6 +313,9 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
     for (int x = 0; x < size_.width; ++x) {
       RowSums pixel;
       add_pixel(x, y, pixel);
+      if (inside) {
+        add_bias(x, y, pixel);
+      }
       const std::size_t i = size_.index(x, y);
       // The values are bounded, so that their sums stay within the range of float.
       errors[i] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
@@ -286,7 +348,9 @@ CleanError total_of(const std::vector<RowSums>& rows, double rendered_share) {
     all.add(row);
   }
   const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
-  all.clean = at_least_variance(all.clean, all.variance);
+  // A pair stands for a pixel, because most pixels have two pairs and two pixels share each pair.
+  const double bias = all.pairs > 0 ? all.bias * (count / static_cast<double>(all.pairs)) : 0;
+  all.clean = std::max(all.clean, all.variance + std::max(0.0, bias));
   return {.mean = all.value / count,
           .rmse_raw = std::sqrt(all.raw / count / rendered_share),
           .rmse_clean = std::sqrt(all.clean / count),

@@ -86,9 +86,10 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
     ++pixels;
     for (std::size_t c = 0; c < 3; ++c) {
       const double apart = of_first[c] - of_second[c];
-      of_pixel += squared_error(a[c], b[c], of_first[c], of_second[c], share);
+      const InParts<double> value{a[c], b[c], of_first[c], of_second[c], share};
+      of_pixel += squared_error(value);
       raw += share * (1 - share) * (apart * apart);
-      variance += share * (1 - share) * ((a[c] - b[c]) * (a[c] - b[c]));
+      variance += value.variance();
       sum += mean[c];
     }
     squares += of_pixel;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace bandsaw {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 /// float. A pixel with a larger radiance is not filtered. A larger depth counts as infinite.
 constexpr float kMaxValue = 1e15f;
 constexpr int kAround = 2;  ///< radius, in pixels, of the neighbours that limit a bright pixel
+constexpr float kMaxOverThird = 4;  ///< see limits_from()
 /// Minimum standard deviation of a half, as a share of the brightness around a pixel. The filters
 /// compare differences with the standard deviation, so they never treat smaller differences as
 /// detail.
@@ -77,30 +79,55 @@ Parts parts_of(const DenoiseInput& input, std::size_t first_pixel, const MapSize
 
 float brightness(const Channels& color) { return (color[0] + color[1]) + color[2]; }
 
-/// Returns `half` with its single bright pixels scaled down. A pixel that is brighter than all
-/// pixels around it in `other` gets the brightness of the brightest of them.
-std::vector<Channels> limited(const std::vector<Channels>& half, const std::vector<Channels>& other,
-                              const MapSize& size, Pool& pool) {
-  std::vector<Channels> out = half;
+/// Returns the limit of each pixel's brightness in one half, from the pixels up to kAround away in
+/// the other half: the brightness of the brightest of them, but at most kMaxOverThird times that of
+/// the third brightest. A pixel above the limit is a single bright one: the other half does not
+/// have such pixels there, or has only one or two of them.
+std::vector<float> limits_from(const std::vector<Channels>& other, const MapSize& size,
+                               Pool& pool) {
+  std::vector<float> limits(size.pixels());
   pool.parallel_for(size.height, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < size.width; ++x) {
-      Channels& pixel = out[size.index(x, y)];
-      const float value = brightness(pixel);
-      float most = 0;
+      float top[3] = {};  // the brightest, the second and the third brightest
       for (int v = std::max(0, y - kAround); v <= std::min(size.height - 1, y + kAround); ++v) {
         for (int u = std::max(0, x - kAround); u <= std::min(size.width - 1, x + kAround); ++u) {
-          most = std::max(most, brightness(other[size.index(u, v)]));
+          float value = brightness(other[size.index(u, v)]);
+          for (float& rank : top) {
+            if (value > rank) {
+              std::swap(value, rank);
+            }
+          }
         }
       }
-      if (value > most) {
+      limits[size.index(x, y)] = std::min(top[0], kMaxOverThird * top[2]);
+    }
+  });
+  return limits;
+}
+
+/// Scales single bright pixels of both halves down to their limits (limits_from). If a pixel is
+/// above its limit in both halves, it shows a small bright detail, for example the reflection of a
+/// lamp. Such a pixel becomes invalid, so that it stays as it was rendered.
+void limit_bright_pixels(Parts& parts, const MapSize& size, Pool& pool) {
+  const std::array limits{limits_from(parts.values[1], size, pool),
+                          limits_from(parts.values[0], size, pool)};
+  for (std::size_t i = 0; i < size.pixels(); ++i) {
+    int above = 0;
+    for (std::size_t h = 0; h < 2; ++h) {
+      Channels& pixel = parts.values[h][i];
+      const float value = brightness(pixel);
+      if (value > limits[h][i]) {
+        ++above;
         for (float& channel : pixel) {
-          channel *= most / value;
+          channel *= limits[h][i] / value;
         }
       }
     }
-  });
-  return out;
+    if (above == 2) {
+      parts.valid[i] = 0;
+    }
+  }
 }
 
 /// Returns the guides of a pixel, each in [0, 1]. `shape` is a pixel of DenoiseInput::shape: `r`
@@ -148,8 +175,8 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
   Map around(size.pixels());  // mean of the channels, then its mean around a pixel
   {
     Parts parts = parts_of(input, first_pixel, size);
-    const std::array halves{limited(parts.values[0], parts.values[1], size, pool),
-                            limited(parts.values[1], parts.values[0], size, pool)};
+    limit_bright_pixels(parts, size, pool);
+    const auto& halves = parts.values;
     for (std::size_t i = 0; i < size.pixels(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
         const float difference = halves[0][i][c] - halves[1][i][c];

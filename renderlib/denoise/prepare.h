@@ -18,10 +18,11 @@ ImageMeans means_of(const DenoiseInput& input);
 /// A clean pixel depends on rows up to this distance away.
 inline constexpr int kDenoiseReach = 24;
 
-/// Returns the planes of `rows` of the image; `rows.first` is even. In each half, a pixel that is
-/// brighter than all pixels up to two away in the other half is scaled down to the brightest of
-/// them. Such a pixel shows a single bright path, which a filter would spread over its neighbours.
-/// Up to 5 rows at each end differ from those of the whole image, because they lack neighbours.
+/// Returns the planes of `rows` of the image; `rows.first` is even. In each half, single bright
+/// pixels are scaled down to the brightness that pixels up to two away have in the other half. Such
+/// a pixel shows a single bright path, which a filter would spread over its neighbours. A pixel
+/// that is bright in both halves and has no such neighbours stays as it was rendered. Up to 5 rows
+/// at each end differ from those of the whole image, because they lack neighbours.
 FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const RowSpan& rows,
                      Pool& pool);
 

@@ -194,6 +194,63 @@ TEST(Denoise, OneBrightPathIsNotSpread) {
   EXPECT_GT(clean.total.rmse_raw, 1);
 }
 
+// Each half has one bright path. They are in neighbouring pixels, so each half has a bright pixel
+// near the bright pixel of the other half.
+TEST(Denoise, BrightPathsInNeighbouringPixelsOfTheHalvesAreNotSpread) {
+  DenoiseInput input = noisy(flat, 0.05f, 8);
+  const std::size_t at = 30 * kWidth + 41;
+  input.first.pixels[at] = gray(2e4f);
+  input.mean.pixels[at] = gray(1e4f);
+  input.mean.pixels[at + 1] = gray(1e4f);  // all of it is in the second half
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(flat);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    ASSERT_LT(std::abs(clean.image.pixels[i].g - truth.pixels[i].g), 0.2f) << "pixel " << i;
+  }
+}
+
+// The reflection of a lamp is two pixels wide, and both halves have it.
+TEST(Denoise, ASmallBrightDetailStaysAsItWasRenderedAndIsNotSpread) {
+  DenoiseInput input = noisy(flat, 0.05f, 10);
+  const std::size_t at = 30 * kWidth + 41;
+  for (std::size_t i = at; i < at + 2; ++i) {
+    input.first.pixels[i] = gray(280);
+    input.mean.pixels[i] = gray(300);
+  }
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(flat);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    if (i == at || i == at + 1) {
+      EXPECT_EQ(clean.image.pixels[i], input.mean.pixels[i]);
+    } else {
+      ASSERT_LT(std::abs(clean.image.pixels[i].g - truth.pixels[i].g), 0.2f) << "pixel " << i;
+    }
+  }
+}
+
+// The halves complement each other, as in NeverEstimatesLessThanTheNoiseThatIsLeft. The waves are
+// weaker than the noise of a half, so the filter flattens them. Only the comparison of neighbouring
+// pixels can find this bias.
+TEST(Denoise, TheEstimatedErrorContainsTheBiasThatNeighboursHaveInCommon) {
+  const Picture waves = [](std::uint32_t x, std::uint32_t) {
+    return gray(0.5f + 0.04f * std::sin(0.6f * static_cast<float>(x)));
+  };
+  const Image truth = image_of(waves);
+  for (const std::uint64_t seed : {11u, 12u, 13u}) {
+    DenoiseInput input = noisy(waves, 0.1f, seed);
+    for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
+      const Rgb& wave = truth.pixels[i];
+      const Rgb complement = wave + (input.first.pixels[i] + wave * -1.0f) * -0.8f;
+      input.mean.pixels[i] = (input.first.pixels[i] + complement) * 0.5f;
+    }
+    const Denoised clean = denoised(input);
+    const double ratio = clean.total.rmse_clean / rmse(clean.image, truth);
+    EXPECT_GT(ratio, 0.7) << seed;
+    EXPECT_LT(ratio, 1.5) << seed;
+    EXPECT_GT(clean.total.bias_share, 0.5) << seed;
+  }
+}
+
 TEST(Denoise, ValuesThatAreNotFiniteStayAndHarmNoOthers) {
   DenoiseInput input = noisy(flat, 0.05f, 9);
   const float inf = std::numeric_limits<float>::infinity();
