@@ -41,8 +41,9 @@ inline std::optional<double> power_of(const std::vector<std::pair<double, double
                                              : std::optional((n * xy - x * y) / spread);
 }
 
-// Any number that is larger than the number of seeds, so that the reference has a seed of its own.
-constexpr std::uint64_t kReferenceSeed = 0x5eed0fa1d;
+// The reference is the mean of two images with these seeds: any numbers that are larger than the
+// number of seeds, so that no other image has them.
+constexpr std::uint64_t kReferenceSeeds[] = {0x5eed0fa1d, 0x2b992ddfa};
 
 // Returns the mean over all pixels and channels.
 double mean_of(const Image& image) {
@@ -120,16 +121,25 @@ class Study {
         const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), plan_(plan), pool_(pool), stop_(stop) {}
 
-  /// Renders the reference and returns its estimated error.
+  /// Renders the reference and returns its estimated error. The reference is the mean of two images
+  /// of different seeds, each with half of the samples. They are independent, so the mean square of
+  /// their differences from the reference is an unbiased estimate of its error.
   absl::StatusOr<double> make_reference() {
-    RenderSettings settings = settings_;
-    settings.seed = settings_.seed ^ kReferenceSeed;
-    ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(scene_, settings, plan_.reference, pool_, stop_, /*progress=*/{},
-                                  /*spill_folder=*/""));
-    reference_ = rendered.film.snapshot().image;
+    std::vector<Image> halves;
+    for (const std::uint64_t seed : kReferenceSeeds) {
+      RenderSettings settings = settings_;
+      settings.seed = settings_.seed ^ seed;
+      ASSIGN_OR_RETURN(const RenderedImage rendered,
+                       render_image(scene_, settings, (plan_.reference + 1) / 2, pool_, stop_,
+                                    /*progress=*/{}, /*spill_folder=*/""));
+      halves.push_back(rendered.film.snapshot().image);
+    }
+    reference_ = halves[0];
+    for (std::size_t i = 0; i < reference_.pixels.size(); ++i) {
+      reference_.pixels[i] = (halves[0].pixels[i] + halves[1].pixels[i]) * 0.5f;
+    }
     mean_ = mean_of(reference_);
-    reference_error_ = rendered.film.error().value_or(ErrorEstimate());
+    reference_error_ = error_metrics(halves[0], reference_);
     return reference_error_.relative_rmse;
   }
 
@@ -295,7 +305,7 @@ class Study {
   const std::atomic<bool>& stop_;
   Image reference_;
   double mean_ = 0;
-  ErrorEstimate reference_error_;
+  ErrorMetrics reference_error_;
   bool guides_ = false;
 };
 

@@ -70,7 +70,7 @@ struct StudyLine {
 
 struct StudyOfScene {
   std::string scene;
-  double reference_error = 0;  ///< estimated relative RMSE of the reference
+  double reference_error = 0;  ///< estimated relative RMSE of the reference, unbiased
   std::vector<StudyLine> lines;
   std::vector<CleanPoint> clean = {};  ///< results with StudyPlan::denoise
 };
