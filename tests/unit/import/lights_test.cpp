@@ -121,7 +121,8 @@ TEST_F(SceneLights, ErrorsOfProjectedImagesNameTheField) {
               HasSubstr("aspect: must lie in [0.001, 1000], is 0"));
   const std::string spot =
       "light { spot { position: [0, 0, 0] direction: [1, 0, 0] intensity { rgb: [1, 1, 1] } ";
-  EXPECT_THAT(error(spot + "mirrored: true } }"), HasSubstr("mirrored: places an image"));
+  EXPECT_THAT(error(spot + "mirrored: true } }"),
+              HasSubstr("mirrored: is only for a light with an image"));
   EXPECT_THAT(error(spot + image + "outer_angle: 90 } }"),
               HasSubstr("image: needs an outer_angle below 90"));
 }
