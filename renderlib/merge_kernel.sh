@@ -29,7 +29,7 @@ case $sections in
   *.init_array* | *.fini_array* | *.preinit_array* | *.ctors* | *.dtors*)
     "$readelf" --wide --relocs "$merged" | grep -A 3 -E "'\.rela?\.(init_array|fini_array|preinit_array|ctors|dtors)" >&2 || true
     fail "the kernel has static initialisers: these functions would run on any processor when the program starts" ;;
-  *" GROUP "*) fail "the kernel still has section groups, which the linker may take for those of other objects" ;;
+  *" GROUP "*) fail "the kernel still has section groups; the linker may replace them by groups of other objects" ;;
 esac
 symbols=$("$readelf" --wide --symbols "$merged")
 case $symbols in

@@ -133,7 +133,8 @@ absl::Status unknown(const std::string& kind, const std::string& word,
 /// have. `app`: the parser of the command `command`.
 absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   std::vector<std::string> extras = app.remaining();
-  // The parser of the program gets what follows a "--" after the command's last argument.
+  // If a "--" follows the last argument that the command takes, the words after it are not left in
+  // the parser of the command but in its parent, the parser of the program.
   const std::vector<std::string> later = app.get_parent()->remaining();
   extras.insert(extras.end(), later.begin(), later.end());
   std::erase(extras, "--");  // the parser keeps "--", which is no argument

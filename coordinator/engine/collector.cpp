@@ -17,6 +17,8 @@
 
 namespace bandsaw::coordinator {
 
+// Returns false if the manifest exists but cannot be read. Then it is not known which blobs the
+// package needs. A manifest that is missing or damaged needs no blobs.
 bool Collector::add_blobs_of(const DigestHex& manifest, Needs& needs) {
   const auto digest = wire::digest_from_hex(manifest);
   if (!digest.ok()) {

@@ -76,9 +76,9 @@ class FilmThread {
   struct OneJob {
     RenderSettings settings;
     bool adaptive = false;
-    std::optional<Film> film;               ///< std::nullopt: no band yet, or `rebuild`
-    std::deque<Waiting> waiting;            ///< bands that are not in the film yet
-    std::vector<Added> added;               ///< all rows in the film
+    std::optional<Film> film;     ///< std::nullopt: no band was added yet, or `rebuild` is true
+    std::deque<Waiting> waiting;  ///< bands that are not in the film yet
+    std::vector<Added> added;     ///< all rows in the film
     std::set<std::uint64_t> pass_ends;      ///< numbers of samples at which planned passes end
     std::uint64_t reported = 0;             ///< end of the last pass that was reported
     bool rebuild = false;                   ///< the film must be built again, from `added`

@@ -52,6 +52,7 @@ Step Scheduler::finish_step() {
   return context_.take_step();
 }
 
+/// Does what depends on time alone: ends what has timed out, and continues each active job.
 void Scheduler::on(const input::Tick&) {
   context_.note_natives();  // notes when a native worker (not a browser) was last connected
   barrier_.expire();

@@ -8,9 +8,11 @@
 //   secret of 128 bits in base64url (22 characters)
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
-// instead of the digest. The users' string also names the dashboard, after the addresses, for
-// programs that speak HTTP (deploy/python/bandsaw.py). "+8787" gives only the port: the dashboard
-// is on the hosts in the addresses. "+127.0.0.1:8787" gives the host and the port of the dashboard.
+// instead of the digest. The string of farm users also names the dashboard, for programs that speak
+// HTTP (deploy/python/bandsaw.py). The dashboard is written directly after the addresses:
+//
+//   bsw1-f-192.168.1.5:7878+8787-…             port 8787 of the hosts in the addresses
+//   bsw1-f-192.168.1.5:7878+127.0.0.1:8787-…   host and port of the dashboard
 
 #include <optional>
 #include <string>

@@ -1,6 +1,7 @@
-// Sorts the centres of a range of items (boxes with a number) into 16 bins on each axis. For each
-// bin it computes the number of its items and their bounding box. Then it sweeps over the bins of
-// each axis from both sides to find the plane between two bins with the lowest cost.
+// Sorts a range of items into 16 bins on each axis, by the centres of their boxes. An item is the
+// bounding box of a primitive or an instance, with the index of what it bounds. For each bin, the
+// items are counted and their common bounding box is computed. Then the bins of each axis are swept
+// from both sides to find the plane between two bins with the lowest cost.
 
 #include "renderlib/accel/best_split.h"
 

@@ -63,6 +63,8 @@ struct Task {
 /// One level of the upper tree: the large ranges, each with its node.
 class Level {
  public:
+  /// Cuts the items of each range into pieces of at most kPieceSize items, which threads handle one
+  /// by one.
   Level(const TwoLists& lists, std::vector<Task> tasks) : tasks_(std::move(tasks)) {
     std::size_t count = 0;
     for (const Task& task : tasks_) {

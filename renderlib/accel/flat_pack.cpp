@@ -1,6 +1,8 @@
 // Fills a pack with triangles and updates its `size`, which bounds the components of all edges. The
-// error bound of the float filter depends on `size` (README.md, "Triangles"). In the comments, u is
-// 2^-24.
+// float filter (flat_filter.h) is a test in float that rejects a triangle only if the exact test in
+// double would reject it as well. The filter computes its error bound from `size` (README.md,
+// "Triangles"). In the comments, u is 2^-24, the largest relative error when a number is rounded to
+// float.
 
 #include "renderlib/accel/flat_pack.h"
 
@@ -22,7 +24,7 @@ float longest(const FlatPacker::Corners& corners) {
   return most;
 }
 
-/// Returns the largest absolute coordinate.
+/// Returns the largest absolute coordinate of the corners.
 float reach_of(const FlatPacker::Corners& corners) {
   float reach = 0;
   for (const std::array<float, 3>& corner : corners) {
@@ -33,6 +35,7 @@ float reach_of(const FlatPacker::Corners& corners) {
   return reach;
 }
 
+/// Copies the corners of one triangle to a lane of `to`.
 void store(const FlatPacker::Corners& corners, std::size_t lane, FlatPack::Corners& to) {
   for (std::size_t which = 0; which < 3; ++which) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -52,6 +55,10 @@ void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
   pack_.size = std::max(pack_.size, longest(corners) * (1 + 0x1p-22f));
 }
 
+// The corners were rounded from double, so each coordinate is wrong by at most u times reach_of().
+// The error bound of the filter grows with `size`. It covers the errors of the corners if four
+// times reach_of() is added to the longest edge (README.md, "Triangles", derives this number). The
+// factor covers the rounding of the sum.
 void FlatPacker::add_rounded(const Corners& corners, std::uint32_t primitive) {
   add(corners, primitive);
   pack_.size = std::max(pack_.size, (longest(corners) + 4 * reach_of(corners)) * (1 + 0x1p-20f));

@@ -39,6 +39,7 @@ class FlatPacker {
   using Corners = std::array<std::array<float, 3>, 3>;
 
   explicit FlatPacker(FlatPack& pack) : pack_(pack) { pack_ = {}; }
+  /// Adds a triangle whose corners are exact. `primitive` is its number, as in PrimitiveId.
   void add(const Corners& corners, std::uint32_t primitive);
   /// Adds a triangle whose corners were rounded from double.
   void add_rounded(const Corners& corners, std::uint32_t primitive);

@@ -1,6 +1,6 @@
 // Converts a ray to float for the tests of boxes and triangles. The direction is scaled by a power
 // of two; the planes of boxes are moved outwards by the rounding errors, which README.md, "Bounds",
-// derives. Where float could overflow, the box test lets everything pass.
+// derives. If the numbers are so large that float could overflow, every ray enters every box.
 
 #include "renderlib/accel/float_ray.h"
 
@@ -76,6 +76,9 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
   }
 }
 
+// The distance to a plane at b is b * factor + offset. The margin makes distances to near planes
+// smaller and distances to far planes larger; the latter are also multiplied by 1 + 8 u. So in
+// float the ray enters a box no later, and leaves it no earlier, than in exact numbers.
 void FloatRay::set_planes(std::size_t k, double from, float factor, double slack) {
   const std::size_t backwards = std::signbit(factor) ? 3 * kRow : 0;
   near[k] = k * kRow + backwards;

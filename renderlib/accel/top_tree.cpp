@@ -1,4 +1,6 @@
-// Builds the tree over the loose shapes and the static instances of a scene.
+// Builds the tree over the loose shapes (those of no mesh and no group) and the static instances of
+// a scene. A BVH is built from items, which are boxes with an index. A leaf is one instance, or a
+// pack of up to eight loose shapes of one kind.
 
 #include "renderlib/accel/top_tree.h"
 
@@ -10,8 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Appends an item and an element of top.placed for each instance that does not move and can be
-/// hit.
+/// Appends an item and an element of top.placed for each instance that lies in no moving frame and
+/// can be hit. The index of the item is that of the element.
 void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTree& top,
                    TreeItems& items) {
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Top-level BVH of the scene. It contains the loose shapes (those of no mesh and no group) and the
-// instances of meshes and groups that have no animated frame. The tree of moving_tree.h contains
-// the other instances.
+// static instances of meshes and groups. An instance is static if it lies in no frame, a coordinate
+// system that moves. The tree of moving_tree.h contains the other instances.
 
 #include <cstdint>
 #include <memory>
@@ -40,7 +40,7 @@ struct Prototypes {
   std::optional<Prototype> of(const Instance& instance) const;
 };
 
-/// An instance that has no animated frame and can be hit.
+/// A static instance that can be hit.
 struct Placed {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as in PrimitiveId
@@ -54,7 +54,7 @@ struct TopTree : ShapesTree {
   std::size_t bytes() const { return ShapesTree::bytes() + placed.capacity() * sizeof(Placed); }
 };
 
-/// Builds the tree over the loose shapes and the instances that do not move.
+/// Builds the tree over the loose shapes and the static instances.
 TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, Pool* pool);
 
 }  // namespace bandsaw

@@ -14,11 +14,10 @@ namespace {
 /// Maximum number of primitives that are listed.
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
-/// Limit of two numbers of a material: its roughness and its factor of metal. Metals with a
-/// roughness above kRoughest are no casters, because they cast no sharp light. A material that
-/// blends several kinds of surface is a caster if its roughness is at most kRoughest and its factor
-/// of metal is above kRoughest. In a Principled material, the factor of transmission may be above
-/// kRoughest instead of the factor of metal.
+/// Largest roughness of a caster that is no Dielectric (glass). Metals with a larger roughness cast
+/// no sharp light. A MetallicRoughness or Principled material blends several kinds of surface. It
+/// is a caster only if its factor of metal is above the same number 0.5. In a Principled material,
+/// the factor of transmission may be above 0.5 instead.
 constexpr double kRoughest = 0.5;
 
 /// Returns true if surfaces of the material cast caustics. Alpha of a Conductor is the square of

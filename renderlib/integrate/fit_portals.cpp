@@ -335,6 +335,8 @@ struct Search {
   std::vector<std::vector<double>> walls;  ///< offsets of walls in each of the planes
 };
 
+/// Makes the input of the search from the rays: the box around their origins, and for both sides of
+/// each candidate normal the planes to search and the walls that lie across the normal.
 Search search_of(absl::Span<const ScatteredRay> rays) {
   Search search{rays, {}, {}, {}};
   for (const ScatteredRay& ray : rays) {

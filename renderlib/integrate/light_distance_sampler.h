@@ -36,9 +36,10 @@ class LightDistanceSampler {
       return;
     }
     angles_[size_] = Equiangular(origin, direction, length, pivot);
-    // As long as the light is visible through the medium, equiangular distances are nearly
-    // proportional to the integrand. Behind many mean free paths the near end of the segment
-    // dominates, and free-flight sampling is the better strategy.
+    // The integrand is the light scattered towards the start of the segment, per distance. If the
+    // medium absorbs and scatters little up to the pivot, the integrand is nearly proportional to
+    // the pdf of equiangular sampling. If the pivot lies behind many mean free paths, most of the
+    // light is scattered near the start, and free-flight sampling is the better strategy.
     const double depth = extinction_ * bandsaw::length(pivot - origin);
     const double free_flight = std::clamp(0.5 - 0.5 / (1 + depth), kMinFreeFlightShare, 0.5);
     share_[size_++] = 1 - free_flight;

@@ -1,7 +1,8 @@
 // Finds the crossings of a ray with the boundaries of media one after the other, and stores the
 // first few. First counts, for each medium, how many shapes with this medium contain the ray's
-// origin: each exit ahead adds one, and each entry takes one away. Then walks along the ray, where
-// each exit takes one away, and each entry adds one.
+// origin. For this count, each place ahead where the ray leaves such a shape adds 1, and each place
+// where it enters one subtracts 1. Then walks along the ray and keeps the count up to date: a place
+// where the ray enters a shape adds 1, and a place where it leaves one subtracts 1.
 
 #include "renderlib/integrate/medium_traversal.h"
 

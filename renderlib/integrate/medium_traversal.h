@@ -3,9 +3,9 @@
 // Splits a ray into segments at the boundaries of media (scene/media.h).
 //
 // The set of media around the ray's origin is computed for each ray from the boundaries ahead of
-// it: if the ray leaves a medium more often than it enters the medium, the origin is inside. A path
-// carries no medium state. So cameras and lights inside media, surfaces that touch a boundary or
-// lie in it, and reflections at a filled glass need no special cases.
+// it. If the ray leaves a medium more often than it enters this medium, the origin is inside. A
+// path carries no medium state. So cameras and lights inside media, surfaces that touch a boundary
+// or lie in it, and reflections at a filled glass need no special cases.
 
 #include <array>
 #include <cstddef>
@@ -72,9 +72,10 @@ class MediumTraversal {
     };
     /// Adds `shapes` (1 or -1) to the region's count; ignored if there are too many regions.
     void add(const Region& region, int shapes);
-    /// Called for the ray's origin, where a region's count is its exits minus its entries. Clamps
-    /// negative counts to 0: a ray may enter a shape that is not closed more often than it leaves
-    /// it.
+    /// MUST be called when the region's counts are those of the ray's origin: how often the ray
+    /// leaves shapes of the region, minus how often it enters them. Sets negative counts to 0. A
+    /// count is negative if a shape is not closed, so that the ray enters it more often than it
+    /// leaves it.
     void forget_negative();
     /// Returns the region that fills the point; std::nullopt if there is none. Among the regions
     /// with a positive count it is the one with the largest medium id, and among those of this

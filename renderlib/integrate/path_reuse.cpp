@@ -99,6 +99,7 @@ struct Connection {
   double solid_angle_per_area = 0;  ///< converts pdfs by solid angle to pdfs by area
 };
 
+/// Returns the connection of the two vertices. Whether they see each other is not tested.
 Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
   const Vec3 to_shared = shared.point.position - primary.point.position;
   const double cosine = -dot(to_shared, shared.normal);  // times the distance

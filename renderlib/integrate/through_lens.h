@@ -14,8 +14,9 @@ namespace bandsaw {
 
 /// Adds a light-sampling estimate for one light beyond the plane of focus, and sets the path's
 /// previous vertex so that the next hit gets the matching MIS weight. The path's ray MUST pass
-/// through the point in focus of `lens`. Does nothing unless the technique is `kBoth` and some
-/// light may be in the cone beyond the point in focus. `lens` MUST outlive the path's first step.
+/// through the point in focus of `lens`. Does nothing if no light can be in the cone beyond the
+/// point in focus. Does nothing either if the render uses only light sampling or only scattering,
+/// that is, if PathOptions::technique is not `kBoth`. `lens` MUST outlive the path's first step.
 void sample_light_through_lens(const PathContext& context, const LensView& lens, PathState& path);
 
 }  // namespace bandsaw

@@ -97,6 +97,8 @@ Rgb sample_light(const Segment& segment, const LightDistanceSampler& distances, 
     return {};
   }
   const double pdf = light->pdf * distances.pdf(distance);
+  // The weight is needed if a scattered path could hit the light too. In local shading
+  // (`options.local`, the integrator `direct`), media do not scatter paths.
   const bool weighted =
       context.options.technique == Technique::kBoth && !context.options.local && !light->delta;
   const double scattering_pdf =
@@ -144,6 +146,8 @@ MediumEvent through_segment(const Segment& segment, double length, PathState& pa
   if (segment.context.samples_lights()) {
     path.radiance += sample_light(segment, distances, at);
   }
+  // Local shading has no indirect light. In its place, the medium scatters the scene's ambient
+  // term, a constant radiance from all directions, and the path passes.
   if (options.local) {
     path.radiance +=
         segment.free_flight.all_scattered() * segment.context.scene.local_shading().ambient;
@@ -173,9 +177,10 @@ MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ra
   return through_segment(segment, length, path);
 }
 
-/// Recomputes the nested dielectrics of a path that was scattered at the end of `ray`, before the
-/// surface that intersect_visible() found. The path has passed only the boundaries of nested glass
-/// that lie before the end of `ray`.
+/// Sets `nesting.here` to the glasses that contain the end of `ray`, where a medium has scattered
+/// the path. Before the scattering was known, intersect_visible() followed the ray as far as the
+/// next surface. It updated `nesting.here` at each hidden boundary (a boundary of glass inside a
+/// glass of higher priority), also at those beyond the end of `ray`.
 void recompute_nesting(const PathContext& context, const Ray& ray, std::uint32_t depth,
                        NestedDielectrics& nesting) {
   nesting.here = nesting.before;

@@ -46,6 +46,7 @@ SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
   return sided;
 }
 
+/// Samples a direction in proportion to its cosine. std::nullopt: it lies below the surface.
 std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, double v) {
   const Vec3 local = sample_cosine_hemisphere(u, v);
   // The sample is constructed in place, which is faster than to copy it into the optional.
@@ -72,6 +73,8 @@ double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
   return half_chord * (4 * c * c - 1 + fuzz * fuzz) / (2 * kPi * fuzz * fuzz * fuzz);
 }
 
+/// Samples the direction of a point of the ball with radius `fuzz` around the mirror direction.
+/// std::nullopt: the metal absorbs the light, because the direction lies below the surface.
 std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, double v, double w) {
   const Vec3 direction = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
   const double size = length(direction);
@@ -88,6 +91,8 @@ std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, dou
   return sample;
 }
 
+/// Reflects wo with the probability of the Fresnel reflectance, and refracts it otherwise. `lobe`
+/// is a random number that chooses between the two.
 std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double lobe) {
   const Vec3& n = bsdf.normal.shading;
   const double cos_i = std::min(1.0, dot(bsdf.wo, n));

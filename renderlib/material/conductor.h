@@ -25,7 +25,8 @@ struct RoughConductorBsdf {
 };
 
 /// Returns the reflectance of a facet; white without an index. cos_i, in [0, 1], is the cosine of
-/// the angle between the direction and the facet's normal.
+/// the angle between the incident light and the facet's normal, which equals the angle of the
+/// reflected light.
 Rgb conductor_reflectance(const std::optional<ConductorIndex>& index, double cos_i);
 
 /// sample() and evaluate() are those of material/bsdf.h for this kind. u and v select the facet.

@@ -17,10 +17,10 @@ GgxAlbedo mixed(const GgxAlbedo& a, const GgxAlbedo& b, double t) {
 }
 
 /// Returns the albedo for a direction with this cosine to the normal. It is integrated by the
-/// midpoint rule over the unit square from which visible normals are sampled. The integrand is the
-/// shadowing term, which is at most 1. The second number is v. Values of v near 1 sample the tail
-/// of the distribution, so points are denser near v = 1. With these numbers of points the table is
-/// within 2e-3 of the integral (tests).
+/// midpoint rule over the unit square of the numbers (u, v) with which sample_ggx_visible() chooses
+/// a normal. The integrand is the shadowing term, which is at most 1. Values of v near 1 sample the
+/// tail of the distribution, so points are denser near v = 1. With these numbers of points the
+/// table is within 2e-3 of the integral (tests).
 GgxAlbedo integrated(double cos_theta, double alpha) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 48;
@@ -45,6 +45,7 @@ GgxAlbedo integrated(double cos_theta, double alpha) {
 
 }  // namespace
 
+// Fills the table, and for each roughness the mean over directions weighted by their cosine.
 GgxAlbedoTable::GgxAlbedoTable() {
   for (int r = 0; r <= kRoughnesses; ++r) {
     const double roughness = static_cast<double>(r) / kRoughnesses;

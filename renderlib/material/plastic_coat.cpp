@@ -23,9 +23,9 @@ struct Shares {
 };
 
 /// Returns the reflected and the transmitted share of light that meets a rough boundary from a
-/// direction with this cosine. They are integrated by the midpoint rule over the unit square from
-/// which facets are sampled. The second number is v. Values of v near 1 sample the tail of the
-/// distribution, so points are denser near v = 1.
+/// direction with this cosine. They are integrated by the midpoint rule over the unit square of the
+/// numbers (u, v) with which sample_facet() chooses a facet. Values of v near 1 sample the tail of
+/// the distribution, so points are denser near v = 1.
 Shares shares_of(double cos_theta, double eta, const Facets& facets) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 64;

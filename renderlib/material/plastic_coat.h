@@ -41,6 +41,7 @@ class PlasticCoat {
     double internal = 0;          ///< At::internal_reflectance()
     std::vector<double> passing;  ///< At::passing() for cosine i / (kCosines - 1)
   };
+  /// Computes the table for one alpha by numerical integration.
   Row row_of(const Microfacets& surface, double alpha) const;
   /// Interpolates Row::passing of a row.
   double between(std::size_t row, double cos_theta) const;

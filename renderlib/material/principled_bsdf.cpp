@@ -62,6 +62,7 @@ void add_specular(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, Bsdf
   sum.pdf += bsdf.chances[kSpecular] * reflecting(bsdf, f) * pdf;
 }
 
+/// Adds the value and the pdf of the clear coat to `sum`. h is the half vector of wo and wi.
 void add_coat(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
   const double o_h = std::min(1.0, dot(bsdf.o, h));
   const double density = gtr1(h.z, bsdf.coat_alpha);
@@ -73,6 +74,8 @@ void add_coat(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValu
   sum.pdf += bsdf.chances[kCoat] * density * h.z / (4 * o_h);
 }
 
+/// Adds the value and the pdf of rough refraction to `sum`. Adds nothing if no facet refracts wo to
+/// i, which is wi in the local frame.
 void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
   // The half vector of a refraction (Walter et al. 2007, eq. 16). The division below by
   // copysign(size, h.z) turns the half vector to the side of the normal.

@@ -107,6 +107,7 @@ Rgb blackbody(double kelvin, BlackbodyScale scale) {
   if (scale == BlackbodyScale::kPeak) {
     return scaled(color, 1);
   }
+  // kPower: the luminance is (T / 1000 K)^4 / 1000.
   const double ratio = kelvin / 1000;
   return scaled(color, ratio * ratio * ratio * ratio / 1000 / luminance_of(color));
 }

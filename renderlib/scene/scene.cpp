@@ -234,8 +234,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   own.geometry.shutter = {shutter.open, shutter.close};
   own.media.boundaries.shutter = own.geometry.shutter;
   make_static(own.geometry);
-  // The space of a medium is the space of its boundary's frame. MediumSpaces stores the frames
-  // here, because make_static() below removes the frames of static boundaries.
+  // A medium fills its boundary, a closed shape. The boundary may lie in a frame, a coordinate
+  // system that may move. If the medium varies in space, it varies in the coordinates of this
+  // frame. MediumSpaces stores the frames before make_static() removes those of static boundaries.
   if (has_grids(own.media)) {
     scene->medium_spaces_ = MediumSpaces(own.media.boundaries);
   }

@@ -106,6 +106,8 @@ Rgb evaluate(const ImageTexture& image, const TextureCoordinates& at) {
                                                         : bilinear(image, x, y);
 }
 
+// A repetition is one unit of a coordinate of the image, so the number of repetitions along u or v
+// is the change of this coordinate under the linear part of the transform of the uvs.
 double repetitions(const ImageTexture& image, const TextureCoordinates& change) {
   const auto& [a, b, c, d, e, f] = image.uv_transform.m;
   const Vec2& uv = change.of(image.uv_set);

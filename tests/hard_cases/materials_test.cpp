@@ -113,7 +113,9 @@ TEST(MaterialHardCases, M7_FresnelIsAccurateAroundTheCriticalAngle) {
   }
   test::at_most("M7", "error of F if the cosine differs by 1e-5 or more from the critical cosine",
                 error.value(), 1e-12);
-  test::at_most("M7", "error of F times 10^(-k/2) if the difference is 10^-k, less than 1e-5",
+  test::at_most("M7",
+                "error of F times the square root of the difference, if the cosine differs by less "
+                "than 1e-5 from the critical cosine",
                 near_error.value(), 1e-15);
   test::report_hard_case("M7",
                          "total reflection where the exact formula has it; the refracted direction "

@@ -1,5 +1,6 @@
 // Each call registers its gRPC context, so that leave() can cancel it. Bands are sent on one stream
-// that is kept open for a minute.
+// that is kept open for a minute. An instance is the id that this worker process has chosen for
+// itself. The bulk channel carries blobs and pixels, and no heartbeats.
 
 #include "worker/session/farm_calls.h"
 

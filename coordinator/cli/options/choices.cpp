@@ -82,7 +82,7 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
     }
     if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "--layers: each name once, separated by commas; '", list, "' has ", name, " twice"));
+          "--layers: must name each layer at most once; '", list, "' names ", name, " twice"));
     }
     kinds.push_back(kind);
   }

@@ -36,7 +36,7 @@ absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Proce
     if (options.every_object && objects_of(decoded.scene) > kMaxObjects) {
       return absl::InvalidArgumentError(
           absl::StrCat("--every-object: ", scene, " has ", objects_of(decoded.scene),
-                       " objects, but every ray is tested against at most ", kMaxObjects,
+                       " objects, but the option allows at most ", kMaxObjects,
                        ": leave the option out, or choose a smaller scene"));
     }
     ImageOptions image;

@@ -20,7 +20,7 @@ absl::Status check_study_outputs(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
     if (!is_plot(output) && !absl::EndsWithIgnoreCase(output, ".csv")) {
       return absl::InvalidArgumentError(
-          absl::StrCat("-o: a study's files end in .csv or .svg, is '", output, "'"));
+          absl::StrCat("-o: must end in .csv or .svg, is '", output, "'"));
     }
   }
   return absl::OkStatus();

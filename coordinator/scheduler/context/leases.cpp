@@ -15,8 +15,8 @@ Leases::Leases(const std::string& epoch)
 
 LeaseId Leases::new_id() {
   // The values kFree and kStored mark rows without a lease (coverage.h), so they are not used as
-  // ids. An id may be in use already: leases of an earlier epoch, which workers still hold after a
-  // restart, keep their ids, and such an id may lie in the range of this epoch.
+  // ids. Leases of an earlier epoch, which workers still hold after a restart, keep their ids. Such
+  // an id may lie in the range of this epoch, so ids that are in use are skipped.
   while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
     ++next_;
   }

@@ -64,7 +64,11 @@ class BandChooser {
   Band sized(const Job& job, const Worker& worker, const Band& free) const;
 
  private:
+  /// Returns the free rows of the next probe that this worker may take, and counts this probe and
+  /// those that it skips. std::nullopt: no probe is left.
   std::optional<Band> next_probe(Job& job, const Worker& worker) const;
+  /// Returns the first free piece of the job that is not left to other workers; it is not yet cut
+  /// to the size of a band. std::nullopt: there is none for this worker.
   std::optional<Band> first_free(const Job& job, const Worker& worker) const;
   /// Returns the band that sized() returns, but changed so that suspect rows (rows that a worker
   /// held when it was lost) and other rows are never in one band.

@@ -3,6 +3,9 @@
 // Decides whether a worker may render a job, and a band (a range of rows and samples) of the job. A
 // band that a worker failed is left to other workers as long as one of them can render it. So is a
 // band that the worker's machine was rendering when the machine was lost.
+//
+// A worker is eligible (Worker::eligible) if it is connected, has not announced that it will leave,
+// and is not quarantined (excluded because its machine returned wrong pixels, or by a user).
 
 #include <cstdint>
 #include <vector>
@@ -26,12 +29,13 @@ class Eligibility {
   /// Returns true if the worker may render bands of the job for comparison: its memory is enough
   /// and it has not failed too many bands of the job in a row.
   bool may_audit(const Worker& worker, const Job& job) const;
-  /// Returns true if the worker may also render bands for the image. For browsers, this also
-  /// depends on SchedulerOptions::browsers and on audits_lag().
+  /// Returns true if may_audit() is true and the worker's results may be stored for the image. The
+  /// results of a browser may not while audits_lag() is true. The results of a native worker (one
+  /// that is no browser) may not if SchedulerOptions::browsers lets only browsers render.
   bool may_render(const Worker& worker, const Job& job) const;
-  /// Returns true if a native worker (one that is no browser) is eligible and many bands of the job
-  /// wait for an audit (a second render, to compare). Then browsers get no more bands of the job
-  /// until native workers have done some of these audits.
+  /// Returns true if a native worker is eligible and many bands of the job wait for an audit (a
+  /// second render, to compare). Then browsers get no more bands of the job until native workers
+  /// have done some of these audits.
   /// Without this limit, the job's audits would reach Job::kMaxAudits, and further bands that are
   /// selected for an audit would be stored without one.
   bool audits_lag(const Job& job) const;
@@ -41,12 +45,12 @@ class Eligibility {
   static bool failed_too_often(const Worker& worker, const Job& job);
   /// Returns true if failed_too_often() is true for an eligible native worker.
   bool native_gave_up(const Job& job) const;
-  /// Returns true if some eligible worker may render the job.
+  /// Returns true if may_render() is true for an eligible worker.
   bool someone_may_render(const Job& job) const;
-  /// Returns true if some eligible worker may render the job and has not failed the band.
+  /// Returns true if may_render() is true for an eligible worker that has not failed the band.
   bool someone_else(const Job& job, const Band& band) const;
-  /// Returns true if some eligible worker may render the job, has not failed the band, and runs on
-  /// a machine that was not lost while it was rendering the band.
+  /// Returns true if may_render() is true for an eligible worker that has not failed the band and
+  /// runs on a machine that was not lost while it was rendering the band.
   bool another_machine(const Job& job, const Band& band) const;
 
   /// Returns the bands of the job that this worker must leave to others: those that it failed, if

@@ -50,6 +50,7 @@ class JobLifecycle {
  private:
   void note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error);
   void evaluate_checkpoint(Job& job, const input::PassMerged& merged);
+  /// Returns what is kept of the job when it is final: its time, its samples, its error and so on.
   record::JobSummary summary(const Job& job) const;
 
   Context& context_;

@@ -15,6 +15,8 @@ namespace {
 /// Maximum number of known jobs, final ones included; bounds the memory.
 constexpr std::size_t kMaxJobs = 100'000;
 
+/// Returns true if the numbers of samples are in [1, kMaxSamples], and the target of the error or
+/// the limit of time is above 0.
 bool in_range(const StopRule& stop) {
   struct InRange {
     static bool samples(std::uint64_t n) { return n >= 1 && n <= kMaxSamples; }

@@ -83,8 +83,11 @@ void StoredBands::close_audits(Job& job, const Band& band, WorkerProcessId proce
   std::erase_if(job.audits, is_of_it);
 }
 
+// Journals BandLost for each audited band of which some rows are not stored, because they are
+// missing from the band log. Bands of quarantined processes are left out, because their pixels are
+// never used.
 void StoredBands::note_missing_audited(const Job& job) {
-  const auto audited = job.audited;
+  const auto audited = job.audited;  // a copy, because BandLost removes entries of job.audited
   for (const auto& [band, process] : audited) {
     const Pass* pass = job.pass_of(band);
     if (pass != nullptr && !context_.quarantine.contains(process) &&

@@ -2,7 +2,9 @@
 
 // One job: its specification, its state, its passes with the rows that are stored, its leases,
 // audits and failures. A pass is a range of samples of the whole image; a band is a range of rows
-// and samples, which one worker renders.
+// and samples, which one worker renders. An audit is a second render of a band, to compare. The
+// timeout clock (context/scheduler_clock.h) advances at each input by the time since the last one,
+// but at most by a limit. So no timeout ends only because the coordinator stood still for an hour.
 
 #include <cstdint>
 #include <deque>
@@ -84,10 +86,13 @@ class Job {
   std::uint64_t complete_samples() const;  ///< samples per pixel of the complete passes
   bool complete() const { return fixed_samples && complete_samples() >= *fixed_samples; }
   bool any_free() const;
-  /// Returns true if an audited band waits for a machine.
+  /// Returns true if an open audit is not leased: its band waits for a machine that renders it a
+  /// second time.
   bool audit_waits() const;
   /// Returns the pixel samples of its passes that are neither leased nor stored.
   double free_samples() const;
+  /// Returns the samples, counters and CPU time of all that is stored; for a final job, those of
+  /// its summary.
   Totals totals() const;
   /// Returns the largest of the workers' shares in the work, at most kMaxFinalShares, in descending
   /// order.
@@ -140,7 +145,7 @@ class Job {
   std::uint64_t error_samples = 0;
   ErrorCurve curve;
   /// The last estimate of the error, while the job must not use it yet. The job waits until its
-  /// audits (second renderings, to compare) have a verdict, because pixels may be wrong until then.
+  /// audits have a verdict, because pixels may be wrong until then.
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;
@@ -149,7 +154,9 @@ class Job {
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
   std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
-  /// Timeout clock: time since which no connected worker may render the job.
+  /// Timeout clock: the time at which the scheduler found that no connected worker may render the
+  /// job any more, and that a native worker (no browser) had failed too many of its bands.
+  /// std::nullopt: the scheduler has not found this.
   std::optional<Time> unable_since;
   std::string log_of;            ///< the worker that failed a band last
   std::vector<std::string> log;  ///< the last lines of its log

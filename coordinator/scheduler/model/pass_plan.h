@@ -31,12 +31,12 @@ inline constexpr std::uint64_t kMinCheckpoint = 32;
 /// or NaN: unknown.
 ///
 /// With n samples per pixel, the error of an image falls at a rate between n^-1/2 (random samples)
-/// and n^-1 (well stratified samples).
-/// The checkpoint is the number of samples at which an error that falls as n^-1/2 reaches the
-/// target, limited to the range from 9/8 to 5/4 of `samples`. If an error that falls as n^-1
-/// reaches the target only after this range, the checkpoint is the number of samples at which that
-/// error reaches the target, because the target cannot be met before. So a job renders at most
-/// about a quarter too much; the mean over the scenes of the gallery is 7 %.
+/// and n^-1 (well stratified samples). Let S be the number of samples at which the error reaches
+/// the target if it falls as n^-1/2, the slowest rate. S is clamped to the range from 9/8 to 5/4 of
+/// `samples`. Let F be the number of samples at which the error reaches the target if it falls as
+/// n^-1, the fastest rate. The target cannot be met before F. The checkpoint is the larger of F and
+/// the clamped S. So a job renders at most about a quarter too much; the mean over the scenes of
+/// the gallery is 7 %.
 std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target,
                               std::uint64_t max_samples);
 

@@ -91,6 +91,7 @@ class Sequence {
 
  private:
   Frame* find(FrameNumber number);
+  /// Sets the state of the frame, and updates the counts and the lists of waiting frames.
   void change(Frame& frame, FrameState state);
 
   std::vector<Frame> frames_;  ///< ascending by number

@@ -11,6 +11,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Checks that each lease, its job and its connected worker know each other. A lease owns rows of
+/// its band, unless it is for an audit (a second render, to compare) or a backup task (a second
+/// lease of a late band). The band of a backup task lies in the band of another worker's lease.
 std::optional<std::string> broken_leases(const Context& context) {
   for (const auto& [id, lease] : context.leases.all()) {
     const Job* job = context.jobs.find(lease.job);
@@ -50,6 +53,8 @@ std::optional<std::string> broken_leases(const Context& context) {
   return std::nullopt;
 }
 
+/// Checks the leases of the workers, that connected workers are journalled, and that the workers
+/// with spare credits (they may hold more leases) are those that are listed as available.
 std::optional<std::string> broken_workers(const Context& context) {
   std::size_t available = 0;
   std::uint64_t threads = 0;
@@ -94,6 +99,9 @@ std::optional<std::string> broken_pass(const Context& context, const Job& job, c
   return broken ? broken : std::move(partition);
 }
 
+/// Checks that the state of the job agrees with its leases, audits, passes and place in the lists
+/// of jobs. Passes MUST follow each other as nodes of the summation tree, that is, as aligned
+/// power-of-two numbers of blocks of 8 samples.
 std::optional<std::string> broken_job(const Context& context, const Job& job) {
   if (is_final(job.state) == context.jobs.active().contains(job.id)) {
     return "it is counted as active and final, or as neither";
@@ -143,6 +151,8 @@ std::optional<std::string> broken_job(const Context& context, const Job& job) {
   return std::nullopt;
 }
 
+/// Checks that the state of each frame agrees with the job that renders it, and the state of the
+/// sequence (a job of many frames) with its frames.
 std::optional<std::string> broken_sequence(const Context& context, const Sequence& sequence) {
   if (is_final(sequence.state) == context.sequences.active().contains(sequence.id)) {
     return "it is counted as active and final, or as neither";

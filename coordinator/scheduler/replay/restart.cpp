@@ -1,6 +1,9 @@
 // After a restart, the bands on disk (ranges of rows and samples that workers have rendered) are
-// added one by one. finish() compares the bands that were rendered twice, and continues each job
-// that is not final.
+// added one by one. Then finish() begins the reconnect barrier: nothing is leased until the former
+// workers have reconnected or a grace time is over. It opens the audits of disputed rows again (two
+// machines returned different pixels for such a row), and compares the bands that were rendered
+// twice. At the end it continues the sequences (jobs of many frames), and each job that is not
+// final.
 
 #include "coordinator/scheduler/replay/restart.h"
 

@@ -105,7 +105,8 @@ std::vector<Record> snapshot(const Context& context) {
     records.push_back(record::JobForgotten{next - 1});
   }
   context.quarantine.add_records(records);
-  // A browser that has left joins and leaves in the replay, so that it stays known as a browser.
+  // The record WorkerJoined also says that a worker is a browser. So a browser that has left gets a
+  // record WorkerJoined, and after it a record WorkerLeft.
   for (const auto& [process, instance] : context.browsers) {
     if (!context.joined.contains(instance)) {
       records.push_back(record::WorkerJoined{instance, /*browser=*/true});

@@ -31,8 +31,12 @@ class ResultComparison {
   void reopen_disputes(Job& job);
 
  private:
+  /// Opens an audit of the first row that differs from the stored row, if no audit of it is open.
   void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
+  /// Journals that `other` differs from the stored result of the audit, if it does.
   void note_dispute(const Job& job, const Audit& audit, const Audit::Result& other);
+  /// Closes the first audit that has a verdict (it is known which machines are wrong), and
+  /// quarantines these machines. Returns false if no audit has a verdict.
   bool decide_one(Job& job);
 
   Context& context_;

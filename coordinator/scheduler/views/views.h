@@ -39,6 +39,7 @@ class Views {
   std::vector<std::string> why(JobId id, Time now) const;
 
  private:
+  /// Returns how the job is shown to users.
   JobView view(const Job& job, Time now) const;
   /// Returns the reason why no worker may render the job.
   std::string nobody_reason(const Job& job) const;

@@ -44,8 +44,8 @@ def _hash_floats(*keys):
 
 
 def _offset(seed):
-    """Returns the vector (3) of the number `seed`. Blender adds this vector to the points, so that
-    noises with different seeds are independent."""
+    """Returns a vector, an array of shape (3,), that the hash of the number `seed` determines. Blender
+    adds this vector to the points, so that noises with different seeds are independent."""
     one = np.full(1, seed, dtype=np.float32)
     return 100 + 100 * np.array([_hash_floats(one, np.full(1, k, dtype=np.float32))[0] for k in (0, 1, 2)])
 

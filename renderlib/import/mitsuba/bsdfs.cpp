@@ -71,6 +71,7 @@ bool needs_uv(const Object* bsdf, const Object* emitter) {
   });
 }
 
+// A normal map may be inside wrappers and blends, so the bsdfs inside `bsdf` are searched too.
 bool needs_handedness(const Object* bsdf) {
   return bsdf != nullptr &&
          (bsdf->type == "normalmap" ||
@@ -166,6 +167,8 @@ absl::StatusOr<SurfaceMaterial> Materials::make(const Object* bsdf, const Object
   return add(std::move(draft.material), draft.turned, bsdf, emitter, surface);
 }
 
+// Follows the wrappers around the bsdf to the first bsdf of glass. If it has the larger index of
+// refraction outside, the sides of its geometry are exchanged (`turned`).
 absl::StatusOr<SurfaceMaterial> Materials::sides_of(const Object* bsdf) const {
   SurfaceMaterial sides;
   while (bsdf != nullptr && bsdf->type != "dielectric" && bsdf->type != "roughdielectric") {

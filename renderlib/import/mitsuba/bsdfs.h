@@ -64,8 +64,8 @@ class Materials {
 /// Returns true if the picture depends on the uv coordinates of the surface. The arguments of this
 /// function and of the next two may be nullptr, as in Materials::material_of.
 bool needs_uv(const Object* bsdf, const Object* emitter);
-/// Returns true if the bsdf has a normal map. Then the sign of the surface's second tangent
-/// matters.
+/// Returns true if the bsdf, or a bsdf inside it, is a normal map. Then it matters whether the uv
+/// frame of the surface is left-handed or right-handed.
 bool needs_handedness(const Object* bsdf);
 /// Returns true if the bsdf is "null": light passes as if there were no surface.
 bool is_null(const Object* bsdf);

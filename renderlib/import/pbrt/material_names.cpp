@@ -1,6 +1,6 @@
-// Gives materials their names in our scene, the Bandsaw scene that is made. In pbrt, emission and
-// opacity belong to the shape; in Bandsaw they belong to the material. So each combination of a
-// surface, an emission and an opacity becomes one material.
+// Adds materials to the Bandsaw scene that is made from a pbrt scene, and names them. In pbrt,
+// emission and opacity belong to the shape; in Bandsaw they belong to the material. So each
+// combination of a surface, an emission and an opacity becomes one material.
 
 #include <algorithm>
 

@@ -213,8 +213,8 @@ absl::Status read_relief(const Field& in, const scene::Material& from, SceneDraf
         to.height, read_texture(in.child("bump_texture"), from.bump_texture(), kMaxHeight, draft));
     if (uses_object_space(draft.out.scene.textures, *to.height)) {
       return in.error("bump_texture",
-                      "a height map cannot lie in object space: leave out space, or write "
-                      "space: SPACE_WORLD");
+                      "a height map cannot lie in object space: leave the field \"space\" out, or "
+                      "write space: SPACE_WORLD");
     }
   }
   to.normal_scale = from.has_normal_scale() ? from.normal_scale() : 1;

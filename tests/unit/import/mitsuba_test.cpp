@@ -400,7 +400,9 @@ TEST_F(MitsubaScene, ColoursOfACheckerboardAreExchangedWhereVIsReversed) {
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
-TEST_F(MitsubaScene, ACheckerboardOfNumbersExchangesItsTwoValues) {
+// In a checkerboard of colours, the even cells have color0. In a checkerboard of numbers, here a
+// factor of metal, Mitsuba exchanges the two values: the even cells have color1.
+TEST_F(MitsubaScene, InACheckerboardOfNumbersTheEvenCellsHaveColor1) {
   const scene::Scene from = scene(rectangle(
       "<bsdf type=\"principled\"><texture type=\"checkerboard\" name=\"metallic\">"
       "<float name=\"color0\" value=\"0.75\"/><float name=\"color1\" value=\"0.5\"/></texture>"
@@ -424,8 +426,9 @@ TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
   EXPECT_THAT(image.uv_offset(), ElementsAre(0.5, 0.75));
 }
 
-// By default, the inner angle of a spot light is 3/4 of the cutoff angle. A projector gets the
-// factor pi, so that a white surface perpendicular to its light shows the image.
+// By default, the inner angle of a spot light is 3/4 of the cutoff angle. The irradiance of a
+// projector becomes its image. The intensity of the projector multiplies the image. It is pi, so
+// that a white surface perpendicular to the light shows the image.
 TEST_F(MitsubaScene, FieldsOfLightsAreConverted) {
   const scene::Scene from = scene(R"(
 <emitter type="point"><point name="position" x="1" y="2" z="3"/>

@@ -1,4 +1,5 @@
-// Textures in scene files: checkers, noise, images, and the errors for wrong fields.
+// Textures in scene files: checkers, noise, images, and the errors for wrong fields. The last test
+// is about a shape, the box.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,14 +88,16 @@ TEST(SceneTexture, NoiseHasDefaultsAndReadsItsFields) {
   EXPECT_EQ(noise.space, Space::kObject);
 }
 
-TEST(SceneTexture, AllUsesOfANamedTextureShareOneTexture) {
+// The first scene is wrong: the field `color` of part b of the mixture is empty. The second scene
+// is right: its two materials and its ramp use two named textures, and the product is the third.
+TEST(SceneTexture, AnEmptyColorIsAnErrorAndAllUsesOfANamedTextureShareIt) {
   const auto imported = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }
 material { name: "a" diffuse { texture { use: "fire" } } }
 material { name: "b" diffuse { texture { mix { a { use: "fire" } b { color { } } amount { use: "veins" } } } } }
 )");
-  ASSERT_FALSE(imported.ok());  // the field `color` of the mixture's part b is empty
+  ASSERT_FALSE(imported.ok());
   const auto good = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }

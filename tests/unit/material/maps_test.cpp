@@ -138,9 +138,11 @@ TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   }
 }
 
-// The size of a quad does not change the relief of a noise in space. Heights are rounded to float,
-// which changes the slope by about 2^-11 of the height for each of the 12 cells of the noise in a
-// unit. The tolerance is four times this error for the height of 0.02.
+// The size of a quad does not change the relief of a noise in space. The expected slope is a
+// difference of heights in double. The renderer takes the slope from two heights that are rounded
+// to float, 2^-13 of a cell of the noise apart. The rounding changes the slope by about 2^-11 of
+// the height per cell, and a unit has 12 cells. The tolerance is four times this error: 4 * 12 *
+// 2^-11 of the height 0.02.
 TEST(HeightMap, TheReliefOfANoiseInSpaceDoesNotDependOnTheQuad) {
   const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
   constexpr double kHeight = 0.02;
@@ -224,7 +226,8 @@ TEST(Maps, TheIndexOfGltfVaries) {
   expect_same(with(3, kChecker), with(2, std::nullopt), with(1.5, std::nullopt));
 }
 
-TEST(Maps, TheCoatBendsWithItsOwnNormals) {
+// With the scale 0, the normal map has no effect on the coat either.
+TEST(Maps, TheNormalMapOfTheCoatBendsOnlyTheNormalOfTheCoat) {
   std::vector<Texture> textures = kTextures;
   textures.emplace_back(ConstantTexture{{0.75f, 0.5f, 1}});
   MetallicRoughness m;

@@ -33,8 +33,9 @@ struct Case {
   bool logarithmic;
 };
 
-/// Returns what is left of x turns after whole quarter turns, in [-1/8, 1/8] turns. Only this rest
-/// is passed to the reference function, whose own range reduction is exact for small arguments.
+/// Returns the difference between x turns and the nearest whole number of quarter turns. It is in
+/// [-1/8, 1/8] turns. Only this difference is passed to the reference function, whose own range
+/// reduction is exact for small arguments.
 Quad rest_of_turn(Quad x) {
   return x - static_cast<Quad>(std::nearbyint(4 * static_cast<double>(x))) / 4;
 }
@@ -135,7 +136,8 @@ TEST(ElementaryPow, IsExactEnoughForColours) {
   }
 }
 
-TEST(ElementaryPow, HasTheLimitsOfTheStandard) {
+// A negative base is an exception: the result is NaN, where the standard gives 1 for (-1)^2.
+TEST(ElementaryPow, HasTheLimitsOfTheStandardExceptForNegativeBases) {
   EXPECT_EQ(pow(0, 0), 1);
   EXPECT_EQ(pow(0, 2.4), 0);
   EXPECT_EQ(pow(0, -1), kInfinity);

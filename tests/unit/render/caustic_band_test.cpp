@@ -99,8 +99,8 @@ TEST(CausticBand, HalfTilesHaveTheSameBitsInAnyPass) {
   }
 }
 
-// The band needs more maps than are held at once. Each step of the training and of the maps is also
-// reported, as 0 rows. These steps come before the rows that use them.
+// Progress is reported as the number of rows that are done. The band needs more photon maps than
+// are held at once. A step of the training, or of making a photon map, is reported as 0 rows.
 TEST(CausticBand, ProgressCountsEachRowOnce) {
   Pool pool(1);
   std::vector<std::uint32_t> rows;

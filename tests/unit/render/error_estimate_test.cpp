@@ -120,10 +120,12 @@ TEST(ErrorEstimate, ABlackImageHasNoError) {
   EXPECT_EQ(error.worst_share, 0);
 }
 
-// The first two nodes have the means 1.1 and 0.9. So their common mean is 1, and its variance is
-// 0.01. A further node with the mean m and half as many samples as the two together changes the
-// variance to (2^2 * 0.01 + 1^2 * ((m - 1)^2 - 0.01)) / 3^2, by the formulas of ErrorSums::add().
-TEST(ErrorEstimate, AFurtherNodeChangesTheErrorByItsDifference) {
+// All nodes have 16 samples. The first two have the means 1.1 and 0.9. So their common mean is 1,
+// and ErrorSums::add() estimates its variance by v = ((1.1 - 0.9) / 2)^2 = 0.01. It estimates the
+// variance of a third node of mean m by (m - 1)^2 - v. The mean of all samples has 2/3 of its
+// weight from the first two nodes and 1/3 from the third, so its variance is (2^2 * v + 1^2 * ((m -
+// 1)^2 - v)) / 3^2. The error is the square root of this variance.
+TEST(ErrorEstimate, TheErrorGrowsWithTheDifferenceOfAThirdNodeFromTheMean) {
   const std::vector<double> a(3, 16 * 1.1);
   const std::vector<double> b(3, 16 * 0.9);
   const auto with = [&](double mean) {
