@@ -336,7 +336,7 @@ struct Search {
 };
 
 /// Makes the input of the search from the rays: the box around their origins, and for both sides of
-/// each candidate normal the planes to search and the walls that lie across the normal.
+/// each candidate normal the planes to search and the walls that have this normal.
 Search search_of(absl::Span<const ScatteredRay> rays) {
   Search search{rays, {}, {}, {}};
   for (const ScatteredRay& ray : rays) {
