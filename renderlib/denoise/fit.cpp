@@ -58,7 +58,8 @@ struct Models {
 
 using AllModels = std::array<Models, kFilters>;
 
-/// Fits the functions at the centres of a tile, for both filters and both halves.
+/// Fits the functions at the centres of a tile, for both filters (a narrow and a wide one) and for
+/// both halves (the images of two independent parts of the samples).
 class TileFit {
  public:
   /// `first_row`: the row of centres that is row 0 of the models.

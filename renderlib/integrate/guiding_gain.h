@@ -13,9 +13,10 @@
 
 namespace bandsaw {
 
-/// The variance of one sample of a pixel's luminance, and two parts of it. Each is divided by the
-/// square of the pixel's mean and averaged over pixels. The mean is the largest of three numbers:
-/// the measured mean, the mean that the field predicts, and a sixteenth of the image's mean.
+/// The variance of one sample of a pixel's luminance, and estimates of two parts of it. Each number
+/// is divided by the square of the pixel's mean and averaged over pixels. The largest of three
+/// numbers serves as the pixel's mean: the measured mean, the mean that the field predicts, and a
+/// sixteenth of the image's mean.
 ///
 /// The field consists of cells, which hold the directions from which light arrives at a place
 /// (guiding/guiding_cell.h): some are fitted to the light that paths found, others to photons.
@@ -27,8 +28,8 @@ struct GuidingGain {
   /// light only.
   double direct_variance = 0;
   double direct_rays = 0;
-  /// The field predicts `by_paths` and `by_photons`, so that rare light counts as well. Each may
-  /// exceed `variance`.
+  /// The field predicts `by_paths` and `by_photons`, so that light counts that the measured samples
+  /// missed. So each of the two may exceed the measured `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
 
@@ -38,8 +39,9 @@ struct GuidingGain {
   bool paths_pay() const;    ///< guiding by the cells of paths
   bool maps_pay() const;     ///< photon maps
   bool photons_pay() const;  ///< guiding by the cells of photons
-  /// Returns true if photon maps of indirect light are worth a trial: there is much noise, and
-  /// gathering_pays() could hold if the maps removed all noise and all rays of indirect light.
+  /// Returns true if photon maps of indirect light are worth a trial. This needs much noise. And
+  /// gathering_pays() must be true for maps that would remove all noise and all rays of indirect
+  /// light, because real maps remove less.
   bool gathering_may_pay() const;
 };
 

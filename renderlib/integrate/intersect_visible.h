@@ -24,12 +24,13 @@ struct NestedDielectrics {
 
 /// Returns the first surface along the ray that exists for this sample; std::nullopt if nothing is
 /// hit. Among hits that exist, the order (t, instance, primitive) decides. Updates `nesting` for
-/// all hidden boundaries that are skipped. Two boundaries of nested glasses touch if a ray that
-/// leaves the first one starts beyond both, because rays start at an offset from their surface.
-/// Boundaries that touch are treated as a single boundary, and the result is the surface of the
-/// glass that is present on exactly one side of it. uv directions are set if the material needs
-/// them. `bounce` is the number of scatterings before the ray (0: a camera ray), which selects the
-/// random numbers. Adds the number of rays traced to `rays`.
+/// all hidden boundaries that are skipped. A ray that leaves a surface starts at a small offset
+/// from it. Two boundaries of nested glasses touch if a ray that leaves the first boundary starts
+/// beyond the second. Boundaries that touch count as a single boundary. The result is then the
+/// surface of that glass which is present on one side of the single boundary and absent on the
+/// other side. uv directions are set if the material needs them. `bounce` is the number of
+/// scatterings before the ray (0: a camera ray), which selects the random numbers. Adds the number
+/// of rays traced to `rays`.
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
                                               const PixelSampler& sampler, std::uint64_t sample,
                                               std::uint32_t bounce, NestedDielectrics& nesting,

@@ -135,8 +135,8 @@ TEST(Triangle, T6_AHugeTriangleJustBelowTheCameraIsHit) {
         ++missed;
         continue;
       }
-      // The ray's origin is rounded. Therefore the error is measured in scene units, and also
-      // divided by the change of t that one rounding of the corners causes.
+      // The error of t is reported relative to the size of the scene, and relative to the change of
+      // t that one rounding of the corners causes.
       const double off = std::abs(static_cast<double>(crossing.t - plane_distance(ray, t)));
       error.see(off);
       over_last_bits.see(off / change_by_last_bits(ray, t));

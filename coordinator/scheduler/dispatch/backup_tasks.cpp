@@ -46,7 +46,7 @@ bool BackupTasks::share() {
     }
     const Lease* lease = leases.find(late.lease);
     if (lease == nullptr) {
-      continue;  // a backup task of a lease that was stolen
+      continue;  // the lease ended in an earlier step of this loop
     }
     const Job& job = context_.jobs.at(lease->job);
     const bool queued = late.has_no_backup && late.begins_in_s > kTransfer_s;
@@ -224,7 +224,8 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
     return false;
   }
   Pass& pass = *job.pass_of(lease.band);
-  // Number of pixel samples in one row of the band: Job::cost_of is CostMap::of times this number.
+  // The number of pixel samples in one row of the band. Job::cost_of() multiplies CostMap::of() by
+  // this number.
   const double row_samples =
       static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width;
   const LeaseId original = lease.backup_of == 0 ? lease.id : lease.backup_of;

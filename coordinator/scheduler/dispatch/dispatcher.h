@@ -33,10 +33,15 @@ class Dispatcher {
   void assign();
 
  private:
+  /// Gives leases of free bands (bands without a lease) to all workers that can take more.
   void lease_free();
+  /// Gives the worker one lease, of the first job by rank that has a band for it.
   void lease_to(Worker& worker);
+  /// Gives the worker one lease of the job. Returns false if it gets none.
   bool offer(Worker& worker, Job& job);
+  /// Gives the worker one lease of a frame of the sequence. Returns false if it gets none.
   bool offer_frames(Worker& worker, const Sequence& sequence);
+  /// Returns true if the worker has a lease of a suspect band (a band at which a worker was lost).
   bool holds_suspect(const Worker& worker) const;
 
   Context& context_;

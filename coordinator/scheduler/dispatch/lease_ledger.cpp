@@ -1,6 +1,6 @@
-// A lease assigns a band (a range of rows and samples) to a worker. Every change of a lease is made
-// in three places here: in the coverage of its pass, which says who owns each row, in its job, and
-// at its worker.
+// A lease assigns a band (a range of rows and samples) to a worker. Every change of a lease
+// is recorded in three places: in its job, at its worker, and in the coverage of its pass. The
+// coverage is the table of the lease that owns each row.
 
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
 
@@ -82,6 +82,8 @@ void LeaseLedger::end(LeaseId id, Revoke revoke) {
 }
 
 void LeaseLedger::end_rendered(LeaseId id) {
+  // If the lease was in the worker's Hello, the worker may have sent the result before it read the
+  // reply. Then it must be told that the lease has ended (Lease::in_hello).
   end(id, context_.leases.find(id)->in_hello ? Revoke::kYes : Revoke::kNo);
 }
 

@@ -21,7 +21,8 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares` is
+  /// Returns the cost of a column that is one pixel wide and has one sample in each of its pixels,
+  /// one for each of the rows. `tile_row_shares` is
   /// for adaptive jobs, whose number of samples varies over the image. For each row of tiles (16
   /// rows of pixels), it has the number of samples that the pixels take, divided by the number that
   /// they would take with uniform sampling; empty: 1 for each.
@@ -56,13 +57,13 @@ class RowTimes {
   /// height > 0
   explicit RowTimes(std::uint32_t height) : rows_(height, kUnknown) {}
 
-  /// Records the time, in seconds of one thread, to render one sample of one pixel column over all
-  /// of `rows`.
+  /// Records the time of a column (one pixel wide, one sample in each pixel) of all of `rows`, in
+  /// seconds of one thread.
   void measure(const RowRange& rows, double seconds);
   bool measured() const { return measured_; }
 
-  /// Returns the time, in seconds of one thread, of one sample of one pixel column, summed over the
-  /// rows; 0 if nothing was measured. `tile_row_shares` as in CostMap::of.
+  /// Returns the time of a column (one pixel wide, one sample in each pixel) of the rows, in
+  /// seconds of one thread; 0 if nothing was measured. `tile_row_shares` as in CostMap::of.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
 

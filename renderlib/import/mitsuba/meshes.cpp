@@ -145,7 +145,7 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   const bool has_normals = !mesh->mesh.normals.empty();
   const bool faceted = request.face_normals || mesh->faceted;
   // Mitsuba computes the normals itself for a mesh with face normals and for a mesh without
-  // normals. A placement that mirrors turns these computed normals to the other side.
+  // normals. A mirroring placement turns the computed normals to the other side.
   const bool turned = request.turned != (request.mirrored && (faceted || !has_normals));
   // Describes the uvs that Bandsaw's importer reads from the unchanged file. Their v is Mitsuba's v
   // (kSame) or 1 - Mitsuba's v (kFlipped).

@@ -68,10 +68,11 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   EXPECT_NEAR(clean.total.mean, 1, 0.01);
 }
 
-// An image of 4 samples and 2 further samples, each sample with the standard deviation 0.2. The
+// The image as rendered has 4 samples per pixel and no parts. It becomes the second part, and 2
+// further samples per pixel become the first part. Each sample has the standard deviation 0.2. The
 // image as rendered has the error 0.1, and all samples together have the error 0.2 / sqrt(6). The
 // tolerance is as above.
-TEST(Halves, FurtherSamplesMakeThePartsOfAnImageWithoutParts) {
+TEST(Halves, FurtherSamplesAndTheImageAreTheTwoPartsWithTheirErrors) {
   test::Random random(5);
   const auto noisy = [&](double deviation) {
     Image image{kSide, kSide, {}};

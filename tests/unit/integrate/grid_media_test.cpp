@@ -151,7 +151,8 @@ TEST(GridMedia, EachTechniqueReachesTheSameMean) {
   EXPECT_LT(z(both, moments_of(*scene, kAhead, {.technique = Technique::kScatteringOnly})), 4);
 }
 
-// With the integrator `direct`, media do not light each other. So the medium does not emit.
+// With the integrator `direct` (PathOptions::local), media do not light each other. A medium that
+// emits would make the two results differ, so the medium of this test does not emit.
 TEST(GridMedia, DirectEqualsPathsOfOneScattering) {
   SceneMaker maker;
   maker.sphere({2, 2, 1}, 0.5, maker.lamp(20));

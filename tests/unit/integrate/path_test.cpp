@@ -100,7 +100,8 @@ TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   expect_always(*behind_panes(2, counted), kAhead, 2, 1e-6, /*max_depth=*/2);
   expect_always(*behind_panes(2, counted), kAhead, 0, 0, /*max_depth=*/1);
   expect_always(*behind_panes(2, free), kAhead, 2, 1e-6, /*max_depth=*/1);
-  // After the last scattering that counts, a pane passes light, but reflects none.
+  // After the last scattering that counts (max_depth is 1), the path goes on through a pane, but is
+  // not reflected by it.
   SceneMaker mirrored;
   mirrored.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, mirrored.metal(1, 0));
   const MaterialId pane{static_cast<std::uint32_t>(mirrored.scene.materials.size())};

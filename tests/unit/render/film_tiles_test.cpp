@@ -111,7 +111,7 @@ TEST(Film, PixelsAreTheMeansOfTheirOwnSamplesInAnyOrder) {
 
 // If pixels have different numbers of samples, the noise of each pixel follows from the pixel's own
 // number.
-TEST(Film, TheErrorOfDifferentSampleCountsIsTheirStandardError) {
+TEST(Film, TheErrorIsTheStandardErrorAlsoIfPixelsHaveDifferentSampleCounts) {
   const TileGrid grid{128, 96};
   // Every other tile takes `samples`; the other tiles take none.
   const auto some = [&](const SampleRange& samples) {
