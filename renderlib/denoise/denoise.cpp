@@ -50,6 +50,14 @@ bool has_finite_parts(const DenoiseInput& input, std::size_t at) {
   return finite;
 }
 
+/// A pixel in both parts of the samples. If the pixel stays as it was rendered, the filtered values
+/// are those as rendered.
+struct PixelInParts {
+  bool rendered = false;  ///< the pixel stays as it was rendered
+  std::array<InParts<double>, 3> channels;
+};
+using RowInParts = std::vector<std::optional<PixelInParts>>;
+
 /// Sums over all channels and over the pixels of a row that have finite parts.
 struct RowSums {
   std::uint64_t pixels = 0;  ///< number of these pixels
@@ -68,6 +76,33 @@ struct RowSums {
     variance += other.variance;
     bias += other.bias;
     pairs += other.pairs;
+  }
+
+  /// Adds a pixel, whose mean of all samples is `mean`.
+  void add(const PixelInParts& pixel, const Rgb& mean) {
+    ++pixels;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const InParts<double>& in = pixel.channels[c];
+      const double apart = in.first - in.second;
+      clean += squared_error(in);
+      variance += in.variance();
+      raw += in.share * (1 - in.share) * (apart * apart);
+      value += channel(mean, c);
+    }
+  }
+
+  /// Adds the common bias of a pixel and one of its neighbours, if the neighbour has finite parts.
+  /// A pixel that stays as it was rendered has no bias.
+  void add_bias(const PixelInParts& pixel, const std::optional<PixelInParts>& neighbour) {
+    if (!neighbour) {
+      return;
+    }
+    pairs += 3;
+    if (!pixel.rendered && !neighbour->rendered) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        bias += common_bias(pixel.channels[c], neighbour->channels[c]);
+      }
+    }
   }
 };
 
@@ -133,17 +168,9 @@ class Selection {
   /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves,
   /// weighted by their shares of the samples.
   Rgb value_of(int x, int y) const;
-  /// The three channels of a pixel.
-  using PixelInParts = std::array<InParts<double>, 3>;
-  /// Returns a pixel in both parts; std::nullopt if it has no finite parts. If the filters did not
-  /// use the pixel, because it is negative or too bright, the filtered values are those as
-  /// rendered.
-  std::optional<PixelInParts> in_parts(int x, int y) const;
-  /// Adds a pixel to the sums if it has finite parts.
-  void add_pixel(int x, int y, RowSums& sums) const;
-  /// Adds the common bias of a pixel and its neighbours to the right and below, if they have finite
-  /// parts. A pixel that stays as it was rendered has no bias.
-  void add_bias(int x, int y, RowSums& sums) const;
+  /// Returns row y and, after its last pixel, one entry without a value. A pixel without finite
+  /// parts has no value. There are only entries without a value if y is below the last row.
+  RowInParts row_in_parts(int y) const;
 
   const Strip& strip_;
   const FitInput& planes_;
@@ -240,65 +267,28 @@ Rgb Selection::value_of(int x, int y) const {
   return {value(0), value(1), value(2)};
 }
 
-std::optional<Selection::PixelInParts> Selection::in_parts(int x, int y) const {
-  const std::size_t at = in_image(x, y);
-  if (!has_finite_parts(strip_.input, at)) {
-    return std::nullopt;
-  }
-  const bool rendered = is_rendered(x, y);
-  const float share = strip_.input.first_share[at];
-  PixelInParts pixel;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float of_first = channel(strip_.input.first.pixels[at], c);
-    const double first = of_first;
-    const double second = second_value(channel(strip_.input.mean.pixels[at], c), of_first, share);
-    pixel[c] = {.a = rendered ? first : mixed(x, y, 0, c),
-                .b = rendered ? second : mixed(x, y, 1, c),
-                .first = first,
-                .second = second,
-                .share = share};
-  }
-  return pixel;
-}
-
-void Selection::add_pixel(int x, int y, RowSums& sums) const {
-  const std::optional<PixelInParts> pixel = in_parts(x, y);
-  if (!pixel) {
-    return;
-  }
-  ++sums.pixels;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const InParts<double>& value = (*pixel)[c];
-    const double apart = value.first - value.second;
-    sums.clean += squared_error(value);
-    sums.variance += value.variance();
-    sums.raw += value.share * (1 - value.share) * (apart * apart);
-    sums.value += channel(strip_.input.mean.pixels[in_image(x, y)], c);
-  }
-}
-
-void Selection::add_bias(int x, int y, RowSums& sums) const {
-  const std::optional<PixelInParts> pixel = in_parts(x, y);
-  if (!pixel) {
-    return;
-  }
-  for (const auto& [right, below] : {std::pair{1, 0}, std::pair{0, 1}}) {
-    const int u = x + right;
-    const int v = y + below;
-    if (u >= size_.width || v >= size_.height) {
+RowInParts Selection::row_in_parts(int y) const {
+  RowInParts row(static_cast<std::size_t>(size_.width) + 1);
+  for (int x = 0; x < size_.width && y < size_.height; ++x) {
+    const std::size_t at = in_image(x, y);
+    if (!has_finite_parts(strip_.input, at)) {
       continue;
     }
-    const std::optional<PixelInParts> other = in_parts(u, v);
-    if (!other) {
-      continue;
-    }
-    sums.pairs += 3;
-    if (!is_rendered(x, y) && !is_rendered(u, v)) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        sums.bias += common_bias((*pixel)[c], (*other)[c]);
-      }
+    PixelInParts& pixel = row[static_cast<std::size_t>(x)].emplace();
+    pixel.rendered = is_rendered(x, y);
+    const float share = strip_.input.first_share[at];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float of_first = channel(strip_.input.first.pixels[at], c);
+      const double first = of_first;
+      const double second = second_value(channel(strip_.input.mean.pixels[at], c), of_first, share);
+      pixel.channels[c] = {.a = pixel.rendered ? first : mixed(x, y, 0, c),
+                           .b = pixel.rendered ? second : mixed(x, y, 1, c),
+                           .first = first,
+                           .second = second,
+                           .share = share};
     }
   }
+  return row;
 }
 
 void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
@@ -309,12 +299,18 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
   pool_.parallel_for(size_.height, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     const bool inside = y >= rows.first && y < rows.last;
+    const RowInParts here = row_in_parts(y);
+    const RowInParts below = inside ? row_in_parts(y + 1) : RowInParts();
     RowSums of_row;
     for (int x = 0; x < size_.width; ++x) {
       RowSums pixel;
-      add_pixel(x, y, pixel);
-      if (inside) {
-        add_bias(x, y, pixel);
+      const auto at = static_cast<std::size_t>(x);
+      if (here[at]) {
+        pixel.add(*here[at], strip_.input.mean.pixels[in_image(x, y)]);
+        if (inside) {
+          pixel.add_bias(*here[at], here[at + 1]);
+          pixel.add_bias(*here[at], below[at]);
+        }
       }
       const std::size_t i = size_.index(x, y);
       // The values are bounded, so that their sums stay within the range of float.
