@@ -40,13 +40,18 @@ absl::Status too_large(const std::string& what, std::uint64_t most) {
                                                  " MiB here; `bandsaw submit` takes larger ones"));
 }
 
+/// Checks the number of files of a scene.
+absl::Status check_count(int files) {
+  return files <= kMaxFiles ? absl::OkStatus()
+                            : absl::InvalidArgumentError(
+                                  absl::StrCat("a scene has at most ", kMaxFiles, " files"));
+}
+
 /// Reads a list of digests from the body. Returns the digests for which the store has no blob.
 absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& body) {
   web::FileDigests list;
   RETURN_IF_ERROR(read_json(body, list, kMaxListBytes));
-  if (list.sha256_size() > kMaxFiles) {
-    return absl::InvalidArgumentError(absl::StrCat("a scene has at most ", kMaxFiles, " files"));
-  }
+  RETURN_IF_ERROR(check_count(list.sha256_size()));
   web::FileDigests missing;
   for (const std::string& hex : list.sha256()) {
     ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
@@ -218,9 +223,7 @@ absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
   ASSIGN_OR_RETURN(const SceneRequest wanted, scene_request(request));
   web::SceneFiles files;
   RETURN_IF_ERROR(read_json(body, files, kMaxListBytes));
-  if (files.file_size() > kMaxFiles) {
-    return absl::InvalidArgumentError(absl::StrCat("a scene has at most ", kMaxFiles, " files"));
-  }
+  RETURN_IF_ERROR(check_count(files.file_size()));
   const auto is_scene = [&](const auto& file) { return file.name() == files.scene(); };
   if (std::none_of(files.file().begin(), files.file().end(), is_scene)) {
     return absl::InvalidArgumentError("scene: must be the name of one of the files");

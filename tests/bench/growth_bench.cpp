@@ -233,11 +233,7 @@ void write_json(const std::vector<Grown>& all, double speedup, const std::string
       row.number("n", size);
       for (const Column& column : kColumns) {
         const double value = figures.*column.figure * column.unit;
-        if (value > 0) {
-          row.number(column.name, value);
-        } else {
-          row.unknown(column.name);  // it was not measured
-        }
+        row.known_number(column.name, value > 0 ? value : -1);  // 0: it was not measured
       }
       rows.push_back(row);
     }

@@ -68,7 +68,7 @@ case $part in
     ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
     grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
     [ ! -e "$work/out/bad.pfm" ]
-    # Of several view layers the first is rendered. Here the first layer has a green ball in the middle of the image.
+    # The first one of several view layers is rendered. Here the first layer has a green ball in the middle of the image.
     in_blender "$here/save.py" "$work/out/layers.blend" layers
     "$build/bin/bandsaw" render "$work/out/layers.blend" --samples 4 --report none -o "$work/out/layers.pfm" 2>"$work/error"
     grep -q 'only the view layer "ViewLayer" is rendered' "$work/error" || { cat "$work/error"; exit 1; }

@@ -90,7 +90,7 @@ absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, De
   CleanJobs jobs = clean_jobs(input.spec, input.samples);
   std::vector<JobSpec> wanted = {std::move(jobs.albedo), std::move(jobs.shape)};
   const bool has_parts = input.first.has_value();
-  if (jobs.further && !has_parts) {
+  if (!has_parts) {
     wanted.push_back(*std::move(jobs.further));
   }
   ASSIGN_OR_RETURN(std::vector<Image> images, render(wanted));

@@ -172,8 +172,6 @@ class BandsawEngine(bpy.types.RenderEngine):
         """Shows the image of a finished job without its noise. `image` (height, width, 4): the image as rendered, which the pass NOISY keeps. If
         the image cannot be denoised, a warning tells why, and the image as rendered stays."""
         self.set_pixels(result, NOISY, image)
-        self.update_result(result)
-
         last = {}
 
         def on_state(state):

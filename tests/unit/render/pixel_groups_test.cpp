@@ -73,7 +73,7 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
   }
 }
 
-// Of all pairs of pixels with the same offset, at most 5.1 % are in one group. The tested bound of
+// At most 5.1 % of all pairs of pixels with the same offset are in one group. The tested bound of
 // 5.25 % allows for the edge of the image. The errors of two pixels in one group have a correlation
 // of up to 0.95, so the correlation at any offset is at most 5 % on average.
 TEST(PixelGroups, PixelsAtEveryDistanceRarelyShareAGroup) {
