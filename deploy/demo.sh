@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs a farm on this machine: installs what is needed, builds, starts a coordinator and three workers on loopback, renders a
-# scene with a real model and writes the picture.
+# scene with a real model, removes the noise and writes the picture.
 # Usage: deploy/demo.sh [FOLDER]
 #   FOLDER: where the picture, the scene and the logs are written (default: out/demo)
 # BANDSAW_BUILD=DIR: the build to use. If it is set, nothing is installed or built.
@@ -25,5 +25,5 @@ for name in anna ben cleo; do
 done
 
 bandsaw submit "$folder/engine.textproto" --farm "$data/farm" --samples "${BANDSAW_DEMO_SAMPLES:-64}" \
-  -o "$folder/engine.png"
+  --denoise -o "$folder/engine.png"
 echo "the picture: $folder/engine.png"
