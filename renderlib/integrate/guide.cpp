@@ -54,6 +54,23 @@ bool is_followed(const Bsdf& bsdf) {
   return std::holds_alternative<MirrorBsdf>(bsdf) || std::holds_alternative<DielectricBsdf>(bsdf);
 }
 
+/// Samples the direction in which the guide follows the path. Returns std::nullopt if the guide
+/// shows the surface at `point` itself.
+std::optional<BsdfSample> next_direction(const PathContext& context, const SurfacePoint& point,
+                                         std::uint32_t depth, PathState& path) {
+  // Most surfaces are diffuse. No BSDF is made for them, because that takes a tenth of the time.
+  if (depth >= kMaxGuideBounces ||
+      std::holds_alternative<Diffuse>(context.scene.material(point.material).kind)) {
+    return std::nullopt;
+  }
+  const std::optional<Bsdf> bsdf = make_bsdf(context, point, depth, path);
+  if (!bsdf || !is_followed(*bsdf)) {
+    return std::nullopt;
+  }
+  const Sample4 numbers = context.numbers(group_bsdf(depth));
+  return bandsaw::sample(*bsdf, numbers[0], numbers[1], numbers[2]);
+}
+
 }  // namespace
 
 Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
@@ -71,12 +88,7 @@ Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                     : Rgb{0.5f, 0.5f, 0};
     }
     distance += length(hit->position - path.ray.origin);
-    const std::optional<Bsdf> bsdf = make_bsdf(context, *hit, depth, path);
-    const Sample4 numbers = context.numbers(group_bsdf(depth));
-    const std::optional<BsdfSample> next =
-        bsdf && depth < kMaxGuideBounces && is_followed(*bsdf)
-            ? bandsaw::sample(*bsdf, numbers[0], numbers[1], numbers[2])
-            : std::nullopt;
+    const std::optional<BsdfSample> next = next_direction(context, *hit, depth, path);
     if (!next) {
       return albedo ? path.throughput *
                           albedo_at(scene.material(hit->material), scene.textures(), *hit)
