@@ -21,12 +21,12 @@ namespace bandsaw {
 /// (integrate/preparation.h). MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
-/// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` says
-/// which samples half tiles (halves of tiles of 16 x 16 pixels, tile_samples.h) take in adaptive
-/// sampling, and MUST include the rows of the band. By default, all half tiles take the samples of
-/// the band. Sums of pixels without samples are zero. `progress` may be empty. Checks `stop` at
-/// least once per row of a tile, and returns CANCELLED if `stop` is set. Returns INVALID_ARGUMENT
-/// if settings or band are out of range.
+/// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` is for
+/// adaptive sampling: it states the samples of each half tile (half of a tile of 16 x 16 pixels,
+/// tile_samples.h), and MUST include the rows of the band. By default, all half tiles take the
+/// samples of the band. Sums of pixels without samples are zero. `progress` may be empty. Checks
+/// `stop` at least once per row of a tile, and returns CANCELLED if `stop` is set. Returns
+/// INVALID_ARGUMENT if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
                                        const RowsDone& progress, const TileSamples& tiles = {});

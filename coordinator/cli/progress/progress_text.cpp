@@ -177,10 +177,10 @@ std::string cost_line(const Progress& progress) {
   }
   const ErrorEstimate& error = job.curve.back().estimate;
   if (const auto needed = cpu_s_until(job.curve, 0.01)) {
-    absl::StrAppend(&line, kDot, "1 % after ", duration(*needed), " of CPU");
+    absl::StrAppend(&line, kDot, "1 % error after ", duration(*needed), " of CPU");
   }
-  return absl::StrCat(line, kDot, "half of the pixels within ", percent(error.median),
-                      ", 95 % within ", percent(error.percentile_95));
+  return absl::StrCat(line, kDot, "error up to ", percent(error.median),
+                      " in half of the pixels, up to ", percent(error.percentile_95), " in 95 %");
 }
 
 std::string doubt_line(const Progress& progress) {

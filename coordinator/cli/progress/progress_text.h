@@ -39,8 +39,8 @@ std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 
 /// Returns cost and error distribution of the image: "256 samples a pixel · 8 M rays, 2 M/CPU s ·
-/// 4.0 s of CPU · 1 % after 11.6 s of CPU · half of the pixels within 1.2 %, 95 % within 5 %".
-/// 11.6 s is the estimated CPU time at which the error of the image is 1 %.
+/// 4.0 s of CPU · 1 % error after 11.6 s of CPU · error up to 1.2 % in half of the pixels, up to 5
+/// % in 95 %". 11.6 s is the estimated CPU time at which the error of the image is 1 %.
 std::string cost_line(const Progress& progress);
 
 /// Returns a warning if few pixels have a large share of the error, because the error estimate may

@@ -139,8 +139,8 @@ TEST(ProgressText, TheCostLineShowsRaysTimesAndTheErrorsOfMostPixels) {
   job.curve = {{128, 1, 2, {.relative_rmse = 0.04}},
                {256, 2, 4, {.relative_rmse = 0.02, .median = 0.012, .percentile_95 = 0.05}}};
   EXPECT_EQ(cost_line(progress),
-            "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % after 11.3 s of "
-            "CPU · half of the pixels within 1.2 %, 95 % within 5 %");
+            "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % error after 11.3 s of "
+            "CPU · error up to 1.2 % in half of the pixels, up to 5 % in 95 %");
   EXPECT_THAT(doubt_line(progress), IsEmpty());
   job.curve.back().estimate.worst_share = 0.4;
   EXPECT_THAT(doubt_line(progress), HasSubstr("40 % of the error"));

@@ -158,7 +158,7 @@ TEST(Path, MaxDepthLimitsTheNumberOfScatterings) {
   }
 }
 
-TEST(Path, O3_AnOccluderCastsAnExactShadowAtAnyDistance) {
+TEST(Path, O3_AShadowIsBlackAtAnyDistanceOfTheLamp) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(1));
   maker.quad({-50, 0.5, -50}, {0, 0, 100}, {100, 0, 0}, maker.diffuse(0));
