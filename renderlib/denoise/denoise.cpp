@@ -158,8 +158,16 @@ class Selection {
   /// % of the squared mean of the image, so that dark pixels do not dominate.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
-  /// Sets shares_: at each pixel, chooses the candidate with the least estimated error, and smooths
-  /// the choices.
+  /// How much larger the estimated error of a filter is than that of the rendered value.
+  struct Excess {
+    Map mean;       ///< over the pixels around, within the surface
+    Map deviation;  ///< standard error of the mean, if the pixels are independent
+  };
+  Excess excess_of(const Map& filtered, const Map& rendered) const;
+  /// Sets shares_: at each pixel, chooses the filter with the smaller estimated error, or the
+  /// rendered value if this error is larger than that of the rendered value by at least its
+  /// standard error. Then smooths the choices. Without the standard error, a single pixel could
+  /// make the 25 pixels around it stay noisy.
   void choose();
   /// Returns true if the pixel stays as it was rendered.
   bool is_rendered(int x, int y) const;
@@ -197,8 +205,8 @@ Map Selection::scales() const {
   return scales;
 }
 
-/// Returns the estimated squared error of a candidate, times `scale`, smoothed within surfaces.
-/// Candidate 0 is the rendered value, and candidate k > 0 is filter k - 1.
+/// Returns the estimated squared error of a candidate, times `scale`. Candidate 0 is the rendered
+/// value, and candidate k > 0 is filter k - 1.
 Map Selection::error_of(std::size_t candidate, const Map& scale) const {
   Map error(size_.pixels());
   each([&](int x, int y, std::size_t i) {
@@ -213,28 +221,42 @@ Map Selection::error_of(std::size_t candidate, const Map& scale) const {
     }
     error[i] = valid(x, y) ? sum * scale[i] : 0;
   });
-  smoothing_.apply(error, pool_);
   return error;
 }
 
+/// Returns the filter's error minus `rendered`, both from error_of(), as a mean over the pixels
+/// around. Adds its standard error.
+Selection::Excess Selection::excess_of(const Map& filtered, const Map& rendered) const {
+  constexpr auto kPixels = static_cast<float>(SurfaceSmoothing::kSide * SurfaceSmoothing::kSide);
+  Excess excess{Map(size_.pixels()), Map(size_.pixels())};
+  each([&](int, int, std::size_t i) {
+    excess.mean[i] = filtered[i] - rendered[i];
+    excess.deviation[i] = excess.mean[i] * excess.mean[i];
+  });
+  smoothing_.apply(excess.mean, pool_);
+  smoothing_.apply(excess.deviation, pool_);
+  each([&](int, int, std::size_t i) {
+    const float variance = excess.deviation[i] - excess.mean[i] * excess.mean[i];
+    excess.deviation[i] = std::sqrt(std::max(0.0f, variance) / kPixels);
+  });
+  return excess;
+}
+
 void Selection::choose() {
+  static_assert(kFilters == 2);
   const Map scale = scales();
-  Map least = error_of(0, scale);
+  const Map rendered = error_of(0, scale);
+  const Excess narrow = excess_of(error_of(1, scale), rendered);
+  const Excess wide = excess_of(error_of(2, scale), rendered);
   for (Map& share : shares_) {
-    share.assign(size_.pixels(), &share == shares_.data() ? 1.0f : 0.0f);
+    share.assign(size_.pixels(), 0);
   }
-  for (std::size_t k = 1; k <= kFilters; ++k) {
-    const Map error = error_of(k, scale);
-    each([&](int, int, std::size_t i) {
-      if (error[i] < least[i]) {
-        least[i] = error[i];
-        for (Map& share : shares_) {
-          share[i] = 0;
-        }
-        shares_[k][i] = 1;
-      }
-    });
-  }
+  each([&](int, int, std::size_t i) {
+    const bool is_wide = wide.mean[i] < narrow.mean[i];
+    const Excess& best = is_wide ? wide : narrow;
+    const bool is_worse = best.mean[i] > best.deviation[i];
+    shares_[is_worse ? 0 : is_wide ? 2 : 1][i] = 1;
+  });
   // Sharp limits between regions of different filters would be visible.
   for (Map& share : shares_) {
     smoothing_.apply(share, pool_);

@@ -55,7 +55,8 @@ struct Denoised {
 };
 
 /// Removes the noise. `fit` is the fit() of any kernel (render/kernel.h). A pixel stays as it was
-/// rendered if the estimated error of its filtered value is not below that of its rendered value.
+/// rendered if the estimated error of its filtered value is larger than that of its rendered value,
+/// by more than the standard error of this estimate.
 /// It also stays as it was rendered if one of its values is negative, above 1e15 or not finite.
 ///
 /// The image is filtered in strips of `strip_rows` rows, an even number. If `strip_rows` is 0, a
