@@ -46,12 +46,18 @@ Rgb shape(const Scene& scene, const SurfacePoint& point, const Vec3& direction, 
           static_cast<float>(distance)};
 }
 
+/// Returns true for a smooth boundary of glass and for a pane.
+bool is_smooth_glass(const Bsdf& bsdf) {
+  return std::holds_alternative<DielectricBsdf>(bsdf) ||
+         std::holds_alternative<ThinDielectricBsdf>(bsdf);
+}
+
 /// Returns true if the guide shows what is seen in the surface, and not the surface itself.
 bool is_followed(const Bsdf& bsdf) {
   if (const auto* metal = std::get_if<FuzzyMetalBsdf>(&bsdf)) {
     return metal->fuzz <= kMaxGuideFuzz;
   }
-  return std::holds_alternative<MirrorBsdf>(bsdf) || std::holds_alternative<DielectricBsdf>(bsdf);
+  return std::holds_alternative<MirrorBsdf>(bsdf) || is_smooth_glass(bsdf);
 }
 
 /// Samples the direction in which the guide follows the path. Returns std::nullopt if the guide
@@ -68,7 +74,10 @@ std::optional<BsdfSample> next_direction(const PathContext& context, const Surfa
     return std::nullopt;
   }
   const Sample4 numbers = context.numbers(group_bsdf(depth));
-  return bandsaw::sample(*bsdf, numbers[0], numbers[1], numbers[2]);
+  // Of the reflection and the refraction by glass, all samples follow the brighter one: the
+  // denoiser would take a random choice for detail.
+  const double lobe = is_smooth_glass(*bsdf) ? 0.5 : numbers[2];
+  return bandsaw::sample(*bsdf, numbers[0], numbers[1], lobe);
 }
 
 }  // namespace

@@ -73,6 +73,32 @@ TEST(SampleValue, GuidesAreThoseOfTheFirstSurfaceThatIsNoMirror) {
   EXPECT_NEAR(value(mirror, kGuideShape, kAhead).b, 5 + 8, 1e-4);
 }
 
+TEST(SampleValue, GuidesFollowTheBrighterOfReflectionAndRefractionInGlass) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
+  // Straight ahead, nearly all light is refracted: the guides show the wall behind the sphere.
+  // At the edge of the sphere, nearly all light is reflected, past the sphere to the wall.
+  const Ray edge{.origin = {0.9999, 0, 5}, .direction = {0, 0, -1}};
+  for (const Ray& ray : {kAhead, edge}) {
+    for (std::uint64_t sample = 0; sample < 100; ++sample) {
+      EXPECT_EQ(value(maker, kGuideAlbedo, ray, sample), (Rgb{0.2f, 0.4f, 0.6f})) << sample;
+      EXPECT_EQ(value(maker, kGuideShape, ray, sample), value(maker, kGuideShape, ray)) << sample;
+    }
+  }
+}
+
+TEST(SampleValue, GuidesShowWhatIsBehindAPane) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  wall(maker, maker.material(ThinDielectric{.transmission = gray(0.5f)}), 1);
+  for (std::uint64_t sample = 0; sample < 100; ++sample) {
+    EXPECT_EQ(value(maker, kGuideShape, kAhead, sample).b, 7) << sample;
+    // The pane's own albedo is near white.
+    EXPECT_LT(value(maker, kGuideAlbedo, kAhead, sample).r, 0.11f) << sample;
+  }
+}
+
 TEST(SampleValue, TheAlbedoOfAnEmitterIsClampedAndTheAlbedoOfGlassIsWhite) {
   SceneMaker maker;
   maker.sphere({0.1, 0.2, 0}, 1, maker.lamp(3));
