@@ -56,9 +56,11 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
   return absl::OkStatus();
 }
 
-std::uint64_t guide_samples(std::uint64_t samples) {
+GuideSamples guide_samples(std::uint64_t samples) {
   const std::uint64_t quarter = std::bit_floor(samples / 4);
-  return std::min(samples, std::clamp(quarter, kMinGuideSamples, kMaxGuideSamples));
+  const std::uint64_t albedo = std::clamp(quarter, kMinAlbedoSamples, kMaxAlbedoSamples);
+  return {.albedo = std::min(samples, albedo),
+          .shape = std::min(samples, std::max(albedo / 2, kMinShapeSamples))};
 }
 
 std::uint64_t further_samples(std::uint64_t samples) {
@@ -66,9 +68,9 @@ std::uint64_t further_samples(std::uint64_t samples) {
 }
 
 CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples) {
-  const std::uint64_t of_guides = guide_samples(samples);
-  CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, of_guides, " (guide: albedo)"),
-                 .shape = beside(of, kGuideShape, of_guides, " (guide: shape)"),
+  const GuideSamples guides = guide_samples(samples);
+  CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, guides.albedo, " (guide: albedo)"),
+                 .shape = beside(of, kGuideShape, guides.shape, " (guide: shape)"),
                  .further = std::nullopt};
   if (const std::uint64_t further = further_samples(samples); further > 0) {
     JobSpec other_seed = of;

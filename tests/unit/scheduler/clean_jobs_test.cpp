@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <utility>
 
 #include "renderlib/scene/guide_integrators.h"
 
@@ -26,10 +27,12 @@ TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
   EXPECT_EQ(many.albedo.settings.integrator, kGuideAlbedo);
   EXPECT_EQ(many.shape.settings.integrator, kGuideShape);
   EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{16}));
+  EXPECT_EQ(many.shape.stop, StopRule(StopAtSamples{8}));
   EXPECT_EQ(many.albedo.settings.seed, 3u);
   EXPECT_FALSE(many.further);
   const CleanJobs few = clean_jobs(job(), 7);
-  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{7}));
+  EXPECT_EQ(few.albedo.stop, StopRule(StopAtSamples{7}));
+  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{4}));
   ASSERT_TRUE(few.further);
   EXPECT_EQ(few.further->stop, StopRule(StopAtSamples{3}));
   EXPECT_NE(few.further->settings.seed, 3u) << "the samples must be independent";
@@ -39,11 +42,13 @@ TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
 
 // The quarter is rounded down to a power of two and limited to 8 to 32 samples. The guides never
 // have more samples than the image.
-TEST(CleanJobs, TheGuidesHaveAQuarterOfTheSamplesWithinBounds) {
-  const std::map<std::uint64_t, std::uint64_t> expected = {
-      {1, 1}, {7, 7}, {8, 8}, {16, 8}, {63, 8}, {64, 16}, {127, 16}, {128, 32}, {1 << 20, 32}};
+TEST(CleanJobs, TheAlbedoHasAQuarterOfTheSamplesWithinBoundsAndTheShapeHalfOfThat) {
+  const std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> expected = {
+      {1, {1, 1}},  {3, {3, 3}},   {7, {7, 4}},    {8, {8, 4}},     {16, {8, 4}},
+      {63, {8, 4}}, {64, {16, 8}}, {127, {16, 8}}, {128, {32, 16}}, {1 << 20, {32, 16}}};
   for (const auto& [samples, of_guides] : expected) {
-    EXPECT_EQ(guide_samples(samples), of_guides) << samples;
+    EXPECT_EQ(guide_samples(samples).albedo, of_guides.first) << samples;
+    EXPECT_EQ(guide_samples(samples).shape, of_guides.second) << samples;
   }
 }
 
