@@ -273,7 +273,8 @@ void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>
     job.added.erase(one);
   }
   if (!lost.empty()) {
-    store_.reopen(id);  // before the first lost band is leased again
+    // The store must accept bands of the job again before the scheduler leases the first lost band.
+    store_.reopen(id);
     scheduler_.bands_damaged({.job = id, .bands = std::move(lost)});
   }
 }

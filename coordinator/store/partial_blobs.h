@@ -58,8 +58,9 @@ class PartialBlobs {
   explicit PartialBlobs(std::string folder) : folder_(std::move(folder)) {}
   std::string path_of(const wire::Digest& digest) const;
   void release(const Claim& claim) EXCLUDES(mutex_);
-  /// Goes through the files from the newest to the oldest. Removes each file with which their
-  /// number would exceed wire::kPartialBlobs or their bytes would exceed wire::kPartialBytes.
+  /// Goes through the files from the newest to the oldest, and counts the files that it keeps and
+  /// their bytes. Removes a file if keeping it would exceed wire::kPartialBlobs files or
+  /// wire::kPartialBytes bytes.
   void trim() REQUIRES(mutex_);
 
   const std::string folder_;

@@ -2,7 +2,7 @@
 
 // The queries for a ray: its closest hit, its closest hit beyond an earlier one, or whether it hits
 // anything. A query is the template parameter `Query` of the functions of trace.h. These functions
-// pass every hit that the double tests find to found(), in any order.
+// test shapes in double precision, and call the query's found() for each hit, in any order.
 
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"

@@ -4,10 +4,11 @@
 //
 // The excess of a texel is its luminance minus the mean over all directions, clamped at zero. The
 // pdf is proportional to the bilinear interpolation of the excess. Apart from rounding errors, the
-// proportion is exact everywhere, also within a texel. On a face of a cube map, the pdf by area is
-// proportional to the interpolation of the excess times the texel's solid angle. The uniform part
-// of the light is left to BSDF sampling (MIS compensation: Karlik et al. 2019, "MIS Compensation:
-// Optimizing Sampling Techniques in Multiple Importance Sampling").
+// proportion is exact everywhere, also within a texel. The face of a cube map is an exception:
+// there each texel has a weight, its excess times its solid angle, and the pdf by area is
+// proportional to the bilinear interpolation of the weights. The uniform part of the light is left
+// to BSDF sampling (MIS compensation: Karlik et al. 2019, "MIS Compensation: Optimizing Sampling
+// Techniques in Multiple Importance Sampling").
 
 #include <cstdint>
 
@@ -30,8 +31,7 @@ class EnvironmentLight {
   EnvironmentLight(Environment environment, absl::Span<const Texture> textures);
 
   bool empty() const { return !(excess_ > 0); }
-  /// Returns the integral over all directions of the luminance above the mean. This is the
-  /// irradiance that a surface would have if it faced all directions at once.
+  /// Returns the integral over all directions of the luminance above the mean.
   double excess() const { return excess_; }
 
   /// Samples a direction; u, v in [0, 1). The light MUST NOT be empty. At the border of the sampled

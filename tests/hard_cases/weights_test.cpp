@@ -133,10 +133,9 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
 
 TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
   // At each of the two places, divide the variance of the weighted samples by the variance of the
-  // better technique. Let r and s be these two ratios. Weights are good if max(r, s) is small. It
-  // is at least the mean share r + (1 - share) s, for every share from 0 to 1. So the smallest mean
-  // that any weights reach is a lower bound of max(r, s). The share that follows was found by a
-  // search.
+  // better technique. Let r and s be these two ratios. Weights are good if max(r, s) is small. For
+  // every share q from 0 to 1, max(r, s) is at least the mean q r + (1 - q) s. So the smallest mean
+  // that any weights reach is a lower bound of max(r, s). The q that follows was found by a search.
   constexpr double kShareNear = 0.96;
   std::vector<Place> places;
   for (const auto& [height, share] :

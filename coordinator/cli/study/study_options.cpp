@@ -42,7 +42,8 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_flag("--every-object", raw.every_object,
                "Also test each ray against every object; small scenes only");
   app.add_flag("--denoise", raw.compare_clean,
-               "Measure denoised images and the same images as rendered, instead of techniques");
+               "Compare each image with the same image after --denoise, and not techniques such as "
+               "path guiding");
   app.add_flag("--quiet", raw.quiet, "Print only the table and errors");
 }
 

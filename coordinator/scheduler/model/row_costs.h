@@ -21,11 +21,10 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Returns the cost of a column that is one pixel wide and has one sample in each of its pixels,
-  /// one for each of the rows. `tile_row_shares` is
-  /// for adaptive jobs, whose number of samples varies over the image. For each row of tiles (16
-  /// rows of pixels), it has the number of samples that the pixels take, divided by the number that
-  /// they would take with uniform sampling; empty: 1 for each.
+  /// Returns the cost of the rows for a column that is one pixel wide, with one sample a pixel.
+  /// `tile_row_shares` is for adaptive jobs, whose number of samples varies over the image. For
+  /// each row of tiles (16 rows of pixels), it has the number of samples that the pixels take,
+  /// divided by the number that they would take with uniform sampling; empty: 1 for each.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// Returns how many of the rows, from the first on, cost at most `max_cost` together (in units of

@@ -1,8 +1,8 @@
 // Compares indirect light from photon maps with a closed form, and checks that paths with maps have
 // the same expected value as paths without. A receiver is a surface with wide lobes. At the second
-// receiver of a path, the light that arrives from other receivers is estimated from photons. Beyond
-// the second receiver, the path collects only light that arrives there without meeting another
-// receiver. So the path ends at the third receiver.
+// receiver of a path, the light that arrives from other receivers is estimated from photons. So the
+// path goes on from there only for light that no receiver scatters on its way to the second one,
+// and it ends at the third receiver.
 
 #include "renderlib/integrate/indirect_photons.h"
 
@@ -235,7 +235,7 @@ TEST(IndirectPhotons, PassAPaneThatDoesNotCountAsAScattering) {
   }
 }
 
-TEST(IndirectPhotons, DependNeitherOnThreadsNorOnChunks) {
+TEST(IndirectPhotons, DependOnTheSeedAndNotOnThreads) {
   const auto scene = uplit_room().build();
   const PhotonSources sources = sources_of(*scene, 8);
   const auto one = maps_of(*scene, sources, 3, 1 << 13, 1);

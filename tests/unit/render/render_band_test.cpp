@@ -179,6 +179,7 @@ TEST(RenderBand, C5_RowsAreTheSameInEveryBand) {
   test::report_hard_case("C5", "same bits in bands of 1, 3, 7 rows");
 }
 
+// A node is a range of samples that the summation tree of samples sums up (render/band.h).
 TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
   const auto rendered = scene();
   for (const SampleRange& node : {SampleRange{0, 64}, {64, 128}, {0, 128}, {32, 60}, {0, 12}}) {
@@ -328,7 +329,9 @@ TEST(RenderBand, CountsTruncatedPathsAndDroppedPrimitives) {
   EXPECT_EQ(pixels->counters.dropped_primitives, 1u);
 }
 
-TEST(RenderImage, PassesDoubleAndAreNodes) {
+// passes_of(n) divides the samples [0, n) into passes. A pass is a node of the summation tree of
+// samples: an aligned range of a power of two of blocks of 8 samples (render/band.h).
+TEST(RenderImage, EachPassIsAsLongAsAllBeforeAndTheRestIsDividedIntoNodes) {
   EXPECT_TRUE(passes_of(0).empty());
   EXPECT_EQ(passes_of(8), (std::vector<SampleRange>{{0, 8}}));
   EXPECT_EQ(passes_of(64), (std::vector<SampleRange>{{0, 8}, {8, 16}, {16, 32}, {32, 64}}));
