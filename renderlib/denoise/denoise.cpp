@@ -17,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "renderlib/denoise/error_sums.h"
 #include "renderlib/denoise/maps.h"
 #include "renderlib/denoise/prepare.h"
 #include "renderlib/denoise/squared_error.h"
@@ -32,79 +33,6 @@ constexpr FilterSettings kSettings = {
         .color_reach = 1.5f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.05f}};
 /// Shares of the rendered value (first) and of each filter in a pixel's value; their sum is 1.
 using Shares = std::array<Map, 1 + kFilters>;
-
-float channel(const Rgb& color, std::size_t c) {
-  return c == 0 ? color.r : c == 1 ? color.g : color.b;
-}
-
-/// Returns true if the means of both parts of a pixel's samples exist and are finite. Only the
-/// second mean is checked: it is computed from the first and from the mean of all samples, and is
-/// not finite if one of these is not.
-bool has_finite_parts(const DenoiseInput& input, std::size_t at) {
-  const float share = input.first_share[at];
-  bool finite = share > 0 && share < 1;
-  for (std::size_t c = 0; c < 3 && finite; ++c) {
-    finite = std::isfinite(
-        second_value(channel(input.mean.pixels[at], c), channel(input.first.pixels[at], c), share));
-  }
-  return finite;
-}
-
-/// A pixel in both parts of the samples. If the pixel stays as it was rendered, the filtered values
-/// are those as rendered.
-struct PixelInParts {
-  bool rendered = false;  ///< the pixel stays as it was rendered
-  std::array<InParts<double>, 3> channels;
-};
-using RowInParts = std::vector<std::optional<PixelInParts>>;
-
-/// Sums over all channels and over the pixels of a row that have finite parts.
-struct RowSums {
-  std::uint64_t pixels = 0;  ///< number of these pixels
-  double value = 0;          ///< values as rendered
-  double raw = 0;            ///< estimated squared errors as rendered
-  double clean = 0;          ///< estimated squared errors of the result
-  double variance = 0;       ///< the parts of `clean` that are noise
-  double bias = 0;           ///< common_bias() of neighbours
-  std::uint64_t pairs = 0;   ///< number of pairs of neighbours in `bias`, times 3 channels
-
-  void add(const RowSums& other) {
-    pixels += other.pixels;
-    value += other.value;
-    raw += other.raw;
-    clean += other.clean;
-    variance += other.variance;
-    bias += other.bias;
-    pairs += other.pairs;
-  }
-
-  /// Adds a pixel, whose mean of all samples is `mean`.
-  void add(const PixelInParts& pixel, const Rgb& mean) {
-    ++pixels;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const InParts<double>& in = pixel.channels[c];
-      const double apart = in.first - in.second;
-      clean += squared_error(in);
-      variance += in.variance();
-      raw += in.share * (1 - in.share) * (apart * apart);
-      value += channel(mean, c);
-    }
-  }
-
-  /// Adds the common bias of a pixel and one of its neighbours, if the neighbour has finite parts.
-  /// A pixel that stays as it was rendered has no bias.
-  void add_bias(const PixelInParts& pixel, const std::optional<PixelInParts>& neighbour) {
-    if (!neighbour) {
-      return;
-    }
-    pairs += 3;
-    if (!pixel.rendered && !neighbour->rendered) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        bias += common_bias(pixel.channels[c], neighbour->channels[c]);
-      }
-    }
-  }
-};
 
 /// A strip of the image: some rows that are filtered together with the rows around them.
 struct Strip {
@@ -176,8 +104,7 @@ class Selection {
   /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves,
   /// weighted by their shares of the samples.
   Rgb value_of(int x, int y) const;
-  /// Returns row y and, after its last pixel, one entry without a value. A pixel without finite
-  /// parts has no value. There are only entries without a value if y is below the last row.
+  /// Returns row y. A pixel without finite parts has no value.
   RowInParts row_in_parts(int y) const;
 
   const Strip& strip_;
@@ -290,24 +217,17 @@ Rgb Selection::value_of(int x, int y) const {
 }
 
 RowInParts Selection::row_in_parts(int y) const {
-  RowInParts row(static_cast<std::size_t>(size_.width) + 1);
-  for (int x = 0; x < size_.width && y < size_.height; ++x) {
-    const std::size_t at = in_image(x, y);
-    if (!has_finite_parts(strip_.input, at)) {
+  RowInParts row(static_cast<std::size_t>(size_.width));
+  for (int x = 0; x < size_.width; ++x) {
+    std::optional<PixelInParts>& pixel = row[static_cast<std::size_t>(x)];
+    pixel = rendered_in_parts(strip_.input, in_image(x, y));
+    if (!pixel || is_rendered(x, y)) {
       continue;
     }
-    PixelInParts& pixel = row[static_cast<std::size_t>(x)].emplace();
-    pixel.rendered = is_rendered(x, y);
-    const float share = strip_.input.first_share[at];
+    pixel->rendered = false;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float of_first = channel(strip_.input.first.pixels[at], c);
-      const double first = of_first;
-      const double second = second_value(channel(strip_.input.mean.pixels[at], c), of_first, share);
-      pixel.channels[c] = {.a = pixel.rendered ? first : mixed(x, y, 0, c),
-                           .b = pixel.rendered ? second : mixed(x, y, 1, c),
-                           .first = first,
-                           .second = second,
-                           .share = share};
+      pixel->channels[c].a = mixed(x, y, 0, c);
+      pixel->channels[c].b = mixed(x, y, 1, c);
     }
   }
   return row;
@@ -322,18 +242,10 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
     const int y = static_cast<int>(row);
     const bool inside = y >= rows.first && y < rows.last;
     const RowInParts here = row_in_parts(y);
-    const RowInParts below = inside ? row_in_parts(y + 1) : RowInParts();
+    const RowInParts below = inside && y + 1 < size_.height ? row_in_parts(y + 1) : RowInParts();
     RowSums of_row;
     for (int x = 0; x < size_.width; ++x) {
-      RowSums pixel;
-      const auto at = static_cast<std::size_t>(x);
-      if (here[at]) {
-        pixel.add(*here[at], strip_.input.mean.pixels[in_image(x, y)]);
-        if (inside) {
-          pixel.add_bias(*here[at], here[at + 1]);
-          pixel.add_bias(*here[at], below[at]);
-        }
-      }
+      const RowSums pixel = sums_at(here, below, static_cast<std::size_t>(x));
       const std::size_t i = size_.index(x, y);
       // The values are bounded, so that their sums stay within the range of float.
       errors[i] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
@@ -356,23 +268,6 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
           gray(std::sqrt(at_least_variance(errors[i], variances[i])));
     }
   }
-}
-
-/// Returns the errors of the image from the sums of all its rows. `rendered_share`: as in
-/// DenoiseInput.
-CleanError total_of(const std::vector<RowSums>& rows, double rendered_share) {
-  RowSums all;
-  for (const RowSums& row : rows) {
-    all.add(row);
-  }
-  const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
-  // A pair stands for a pixel, because most pixels have two pairs and two pixels share each pair.
-  const double bias = all.pairs > 0 ? all.bias * (count / static_cast<double>(all.pairs)) : 0;
-  all.clean = std::max(all.clean, all.variance + std::max(0.0, bias));
-  return {.mean = all.value / count,
-          .rmse_raw = std::sqrt(all.raw / count / rendered_share),
-          .rmse_clean = std::sqrt(all.clean / count),
-          .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
 
 /// Returns the number of rows of a strip, which is even. A strip has about a quarter of a

@@ -5,21 +5,19 @@
 #include "renderlib/denoise/halves.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "renderlib/denoise/error_sums.h"
 #include "renderlib/denoise/maps.h"
 #include "renderlib/denoise/prepare.h"
-#include "renderlib/denoise/squared_error.h"
 
 namespace bandsaw {
 namespace {
 
 constexpr int kSmoothing = 2;  ///< radius, in pixels, of the mean that smooths the map of errors
-
-std::array<double, 3> channels(const Rgb& color) { return {color.r, color.g, color.b}; }
 
 bool finite(const Rgb& color) {
   return std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b);
@@ -63,49 +61,46 @@ void add_samples(const Image& image, double samples, Image further, double furth
 
 Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Image& clean_first,
                               const Image& clean_second, Pool& pool) {
-  const Image second = second_part(input);
   const MapSize size{static_cast<int>(clean.width), static_cast<int>(clean.height)};
+  const auto row_in_parts = [&](int y) {
+    RowInParts row;
+    for (std::size_t i = size.index(0, y); i < size.index(0, y + 1); ++i) {
+      const Rgb& a = clean_first.pixels[i];
+      const Rgb& b = clean_second.pixels[i];
+      std::optional<PixelInParts>& pixel = row.emplace_back();
+      if (finite(a) && finite(b)) {
+        pixel = rendered_in_parts(input, i);
+      }
+      if (pixel) {
+        pixel->rendered = false;
+        pixel->channels[0].a = a.r;
+        pixel->channels[0].b = b.r;
+        pixel->channels[1].a = a.g;
+        pixel->channels[1].b = b.g;
+        pixel->channels[2].a = a.b;
+        pixel->channels[2].b = b.b;
+      }
+    }
+    return row;
+  };
   Map errors(size.pixels());
-  std::uint64_t pixels = 0;
-  double sum = 0;
-  double raw = 0;
-  double squares = 0;
-  double variance = 0;
-  for (std::size_t i = 0; i < size.pixels(); ++i) {
-    const double share = input.first_share[i];
-    if (!(share > 0 && share < 1) || !finite(input.mean.pixels[i]) || !finite(second.pixels[i]) ||
-        !finite(clean_first.pixels[i]) || !finite(clean_second.pixels[i])) {
-      continue;
+  std::vector<RowSums> sums(static_cast<std::size_t>(size.height));
+  RowInParts here = row_in_parts(0);
+  for (int y = 0; y < size.height; ++y) {
+    RowInParts below = y + 1 < size.height ? row_in_parts(y + 1) : RowInParts();
+    for (int x = 0; x < size.width; ++x) {
+      const RowSums pixel = sums_at(here, below, static_cast<std::size_t>(x));
+      errors[size.index(x, y)] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
+      sums[static_cast<std::size_t>(y)].add(pixel);
     }
-    const auto mean = channels(input.mean.pixels[i]);
-    const auto of_first = channels(input.first.pixels[i]);
-    const auto of_second = channels(second.pixels[i]);
-    const auto a = channels(clean_first.pixels[i]);
-    const auto b = channels(clean_second.pixels[i]);
-    double of_pixel = 0;
-    ++pixels;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double apart = of_first[c] - of_second[c];
-      const InParts<double> value{a[c], b[c], of_first[c], of_second[c], share};
-      of_pixel += squared_error(value);
-      raw += share * (1 - share) * (apart * apart);
-      variance += value.variance();
-      sum += mean[c];
-    }
-    squares += of_pixel;
-    errors[i] = static_cast<float>(std::clamp(of_pixel / 3, -1e30, 1e30));
+    here = std::move(below);
   }
   smooth(errors, size, kSmoothing, pool);
-  squares = at_least_variance(squares, variance);
-  const double count = 3 * std::max(1.0, static_cast<double>(pixels));
   Denoised out{std::move(clean), {input.mean.width, input.mean.height, {}}, {}};
   for (const float error : errors) {
     out.error.pixels.push_back(gray(std::sqrt(std::max(0.0f, error))));
   }
-  out.total = {.mean = sum / count,
-               .rmse_raw = std::sqrt(raw / count / input.rendered_share),
-               .rmse_clean = std::sqrt(squares / count),
-               .bias_share = squares > 0 ? std::clamp(1 - variance / squares, 0.0, 1.0) : 0};
+  out.total = total_of(sums, input.rendered_share);
   return out;
 }
 

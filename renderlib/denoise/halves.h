@@ -24,8 +24,9 @@ void add_samples(const Image& image, double samples, Image further, double furth
 /// parts of the samples, each cleaned alone with the same guides (images of albedo, normal and
 /// depth). Each of these two images depends only on its own part of the samples. So the squared
 /// error of the mean of the two images can be estimated without bias, as for the filters of
-/// denoise(). A filter that gets all samples at once has a smaller error, so the estimate is an
-/// upper bound. All images have the size of `input.mean`.
+/// denoise(), and the second estimate of common_bias() (squared_error.h) is used as there. A filter
+/// that gets all samples at once has a smaller error, so the estimate is an upper bound. All images
+/// have the size of `input.mean`.
 Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Image& clean_first,
                               const Image& clean_second, Pool& pool);
 

@@ -1,0 +1,101 @@
+// Sums of errors over the rows of an image, and the errors of the whole image from these sums.
+
+#include "renderlib/denoise/error_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/denoise/prepare.h"
+
+namespace bandsaw {
+namespace {
+
+float channel(const Rgb& color, std::size_t c) {
+  return c == 0 ? color.r : c == 1 ? color.g : color.b;
+}
+
+}  // namespace
+
+std::optional<PixelInParts> rendered_in_parts(const DenoiseInput& input, std::size_t at) {
+  const float share = input.first_share[at];
+  if (!(share > 0 && share < 1)) {
+    return std::nullopt;
+  }
+  PixelInParts pixel{.rendered = true, .channels = {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float of_first = channel(input.first.pixels[at], c);
+    const double first = of_first;
+    const double second = second_value(channel(input.mean.pixels[at], c), of_first, share);
+    // The second mean is computed from the first and from the mean of all samples, and is not
+    // finite if one of these is not.
+    if (!std::isfinite(second)) {
+      return std::nullopt;
+    }
+    pixel.channels[c] = {.a = first, .b = second, .first = first, .second = second, .share = share};
+  }
+  return pixel;
+}
+
+void RowSums::add(const RowSums& other) {
+  pixels += other.pixels;
+  value += other.value;
+  raw += other.raw;
+  clean += other.clean;
+  variance += other.variance;
+  bias += other.bias;
+  pairs += other.pairs;
+}
+
+void RowSums::add(const PixelInParts& pixel) {
+  ++pixels;
+  for (const InParts<double>& in : pixel.channels) {
+    const double apart = in.first - in.second;
+    clean += squared_error(in);
+    variance += in.variance();
+    raw += in.share * (1 - in.share) * (apart * apart);
+    value += in.share * in.first + (1 - in.share) * in.second;
+  }
+}
+
+void RowSums::add_bias(const PixelInParts& pixel, const std::optional<PixelInParts>& neighbour) {
+  if (!neighbour) {
+    return;
+  }
+  pairs += 3;
+  if (!pixel.rendered && !neighbour->rendered) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      bias += common_bias(pixel.channels[c], neighbour->channels[c]);
+    }
+  }
+}
+
+RowSums sums_at(const RowInParts& here, const RowInParts& below, std::size_t x) {
+  RowSums sums;
+  if (here[x]) {
+    sums.add(*here[x]);
+    if (x + 1 < here.size()) {
+      sums.add_bias(*here[x], here[x + 1]);
+    }
+    if (!below.empty()) {
+      sums.add_bias(*here[x], below[x]);
+    }
+  }
+  return sums;
+}
+
+CleanError total_of(absl::Span<const RowSums> rows, double rendered_share) {
+  RowSums all;
+  for (const RowSums& row : rows) {
+    all.add(row);
+  }
+  const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
+  // A pair stands for a pixel, because most pixels have two pairs and two pixels share each pair.
+  const double bias = all.pairs > 0 ? all.bias * (count / static_cast<double>(all.pairs)) : 0;
+  all.clean = std::max(all.clean, all.variance + std::max(0.0, bias));
+  return {.mean = all.value / count,
+          .rmse_raw = std::sqrt(all.raw / count / rendered_share),
+          .rmse_clean = std::sqrt(all.clean / count),
+          .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
+}
+
+}  // namespace bandsaw
