@@ -99,7 +99,7 @@ figure_strip() {
   local scenes=(books/one_weekend orthographic motion spheres)
   mkdir -p "$folder"
   for scene in "${scenes[@]}"; do
-    render "$gallery/$scene.textproto" strip --height $((width * 5 / 8)) --samples 256
+    render "$gallery/$scene.textproto" strip --height $((width * 5 / 8)) --samples 256 --denoise
     mv "$work/strip.png" "$folder/strip_$(basename "$scene").png"
     echo "$folder/strip_$(basename "$scene").png"
   done
