@@ -47,8 +47,8 @@ struct FlatLanes {
 
 /// Finds the triangles that may be hit before `bound`, and those that are certainly hit at a t in
 /// (0, sure_bound). If `sure_bound` is 0, the result has no triangles that are certainly hit. Both
-/// bounds are in the ray's units: `bound` is FloatRay::above() of a distance, and `sure_bound` is
-/// FloatRay::below() of a distance. README.md, "Triangles", gives the formulas.
+/// bounds are distances along the ray times FloatRay::scale: FloatRay::above() computes `bound`,
+/// and FloatRay::below() computes `sure_bound`. README.md, "Triangles", gives the formulas.
 template <class Float = Float8>
 [[gnu::always_inline]] inline FlatLanes filter_flats(const FlatPack& pack, const FloatRay& ray,
                                                      float bound, float sure_bound) {

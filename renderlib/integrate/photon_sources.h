@@ -1,6 +1,8 @@
 #pragma once
 
-// The surfaces at which the photons of a scene's photon maps start.
+// The surfaces at which the photons of a scene's photon maps start. Other than in usual photon
+// mapping, photons do not start at lights: a point of these surfaces is sampled, and the light that
+// arrives there is found by light sampling.
 
 #include <optional>
 
@@ -19,7 +21,8 @@ struct PhotonSources {
   /// Set if indirect light comes from maps (indirect_photons.h): all surfaces that can scatter it,
   /// except casters.
   std::optional<SurfaceSampler> surfaces = std::nullopt;
-  /// Openings through which the background is sampled at the points where indirect photons start.
+  /// Openings to the background, such as windows. Where a photon of indirect light starts, the
+  /// background that lights this point is sampled through them.
   Portals portals = {};
   std::uint32_t max_depth = 0;  ///< maximum number of scatterings of a path
 };

@@ -117,7 +117,8 @@ absl::Status check_environment(const Environment& environment, absl::Span<const 
   const bool cube = environment.kind == Environment::Kind::kCube;
   const std::size_t count = cube ? 6 : 1;
   if (environment.images.size() != count) {
-    return invalid("images", absl::StrCat("must be ", count, ", are ", environment.images.size()));
+    return invalid(
+        "images", absl::StrCat("there must be ", count, ", there are ", environment.images.size()));
   }
   if (!(environment.strength >= 0) || !std::isfinite(environment.strength)) {
     return invalid("strength", absl::StrCat("must be finite and >= 0, is ", environment.strength));
@@ -138,9 +139,10 @@ absl::Status check_environment(const Environment& environment, absl::Span<const 
     }
     side = i == 0 ? image->width : side;
     if (cube && (image->width != side || image->height != side)) {
-      return invalid(field, absl::StrCat("images of a cube map must be square and of one size, is ",
-                                         image->width, " x ", image->height, ", the first is ",
-                                         side, " wide"));
+      return invalid(
+          field, absl::StrCat("images of a cube map must be square and of one size; this one has ",
+                              image->width, " x ", image->height, " pixels, the first is ", side,
+                              " wide"));
     }
     // Textures are also used for materials, so they may hold numbers that no light can have.
     const float most = max_value(textures, environment.images[i]);

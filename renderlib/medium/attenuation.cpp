@@ -34,6 +34,7 @@ double transmittance(double sigma, double length) {
   return depth < kOpaque ? exp(-depth) : 0;
 }
 
+/// Returns the integral of the transmittance over a path of this length, for extinction `sigma`.
 double reach(double sigma, double length) {
   const double depth = optical_length(sigma, length);
   // For depths below kShort, -expm1(-depth) / sigma equals the length to the last bit or

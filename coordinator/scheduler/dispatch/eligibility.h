@@ -30,8 +30,9 @@ class Eligibility {
   /// and it has not failed too many bands of the job in a row.
   bool may_audit(const Worker& worker, const Job& job) const;
   /// Returns true if may_audit() is true and the worker's results may be stored for the image. The
-  /// results of a browser may not while audits_lag() is true. The results of a native worker (one
-  /// that is no browser) may not if SchedulerOptions::browsers lets only browsers render.
+  /// results of a browser may not be stored while audits_lag() is true. The results of a native
+  /// worker (one that is no browser) may not be stored if SchedulerOptions::browsers lets only
+  /// browsers render.
   bool may_render(const Worker& worker, const Job& job) const;
   /// Returns true if a native worker is eligible and many bands of the job wait for an audit (a
   /// second render, to compare). Then browsers get no more bands of the job until native workers

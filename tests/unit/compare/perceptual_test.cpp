@@ -79,7 +79,7 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
 // 12 of Andersson et al. 2020). The step has the height 0.2, so the feature difference at the step
 // is sqrt(0.2 / sqrt(2)). It raises the error beside the step, although the colours beside the step
 // differ no more than the colours far from it.
-TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
+TEST(Flip, TheErrorBesideAMissingEdgeIsLargerThanFarFromIt) {
   Image edge = uniform(60, 60, 0.3F);
   for (std::size_t i = 0; i < edge.pixels.size(); ++i) {
     edge.pixels[i] = i % 60 < 30 ? gray(0.3F) : gray(0.5F);

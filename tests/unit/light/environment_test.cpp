@@ -262,7 +262,7 @@ TEST(Environment, InvalidEnvironmentsAreRefusedWithTheNameOfTheField) {
   EXPECT_EQ(message(sky), "background.environment: images[0]: must be below 1, is 3");
   sky = good;
   sky.environment.images.clear();
-  EXPECT_EQ(message(sky), "background.environment: images: must be 1, are 0");
+  EXPECT_EQ(message(sky), "background.environment: images: there must be 1, there are 0");
   sky = good;
   sky.textures[0] = ConstantTexture{{1, 1, 1}};
   EXPECT_EQ(message(sky), "background.environment: images[0]: must be an image");
