@@ -281,7 +281,7 @@ TEST(Environment, InvalidEnvironmentsAreRefusedWithTheNameOfTheField) {
   sky.textures[2] = float_image(4, 3, [](auto, auto) { return 1.0f; });
   EXPECT_EQ(message(sky),
             "background.environment: images[2]: images of a cube map must be square and of one "
-            "size, is 4 x 3, the first is 4 wide");
+            "size; this one has 4 x 3 pixels, the first is 4 wide");
 }
 
 }  // namespace
