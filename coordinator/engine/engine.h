@@ -113,8 +113,8 @@ class Engine {
   /// Explains in sentences why the job is not done; empty: no such job.
   void why(JobId job, std::function<void(std::vector<std::string>)> done);
   /// Calls `changed` with the present state and after each change, until it returns false or the
-  /// job is final. There are at most ten calls a second, and at least one. The final state is
-  /// always delivered. If there is no such job, `changed` is called with NOT_FOUND.
+  /// job is final. There are at most ten calls a second, and at least one call a second. The
+  /// final state is always delivered. If there is no such job, `changed` is called with NOT_FOUND.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
   /// Returns the jobs and sequences that `page` selects, ascending by id, without the jobs of
   /// frames. JobView::curve, log and shares are empty.

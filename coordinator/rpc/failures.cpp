@@ -1,4 +1,5 @@
-// Counts the wrong secrets that each address sends within a minute from its first wrong secret.
+// Counts the wrong secrets of each address. A count is for one minute, which begins with the first
+// wrong secret of the address.
 
 #include "coordinator/rpc/failures.h"
 

@@ -1,4 +1,4 @@
-// Passes each message of a worker to the engine and reads the next one.
+// Reads the messages of a worker one after the other, and passes each to the engine.
 
 #include "coordinator/rpc/session_call.h"
 

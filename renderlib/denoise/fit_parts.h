@@ -2,9 +2,9 @@
 
 // Internal to fit(): the sizes of windows and tiles, distances between patches, and least squares.
 // A centre is a pixel at which a function is fitted, one of every two by two pixels (fit.h). A
-// patch is the square around a pixel by which pixels are compared. A half is the image of one of
-// two parts of the samples. Even and odd columns of pixels are stored apart (split_plane.h): parity
-// 0 means the even columns, and parity 1 the odd columns.
+// patch is the square around a pixel by which pixels are compared. The samples are divided into two
+// parts, and a half is the image of one part. Even and odd columns of pixels are stored apart
+// (split_plane.h): parity 0 means the even columns, and parity 1 the odd columns.
 
 #include <cstddef>
 #include <vector>

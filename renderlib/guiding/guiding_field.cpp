@@ -1,7 +1,8 @@
 // Builds a binary tree over the records (light that arrived at points of surfaces). The box around
 // a range of records is halved at its longest side, until each range has few enough records. In
 // each leaf the records are divided into up to six cells, by the axis direction that is closest to
-// their normal. Then fit_cell() fits each cell.
+// their normal. Then fit_cell() finds balls for each cell, from which the light of its records
+// comes.
 
 #include "renderlib/guiding/guiding_field.h"
 

@@ -139,9 +139,9 @@ absl::StatusOr<Shutter> shutter_of_frame(const Field& root, const scene::Scene& 
                         : read_shutter(root, from, time);
 }
 
-/// Reads a scene file at a frame. The tracks of the scene have their values in the middle of the
-/// exposure, but tracks of the camera move it during the exposure. `written` is the scene before
-/// its tracks are evaluated. `locations` may be nullptr.
+/// Reads a scene file at a frame. The tracks of objects are evaluated in the middle of the
+/// exposure. The tracks of the camera are evaluated at its beginning and end, so that the camera
+/// moves. `written` is the scene before its tracks are evaluated. `locations` may be nullptr.
 absl::Status read_frame(const scene::Scene& written,
                         const google::protobuf::TextFormat::ParseInfoTree* locations,
                         const ImportChoices& choices, SceneDraft& draft) {

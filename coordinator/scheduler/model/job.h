@@ -172,7 +172,7 @@ class Job {
   std::optional<record::JobSummary> summary;      ///< for a final job
   std::vector<WorkerShare> final_shares;          ///< for a final job, descending
 
-  WorkClock clock;           ///< runs since the first lease in this epoch, or after a pause
+  WorkClock clock;           ///< starts at the first lease of this epoch or after a pause
   double elapsed_noted = 0;  ///< seconds in all epochs, as journalled last
   RecentRate throughput;     ///< pixel samples per second
   CostMap cost;

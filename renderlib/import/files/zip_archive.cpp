@@ -242,8 +242,8 @@ absl::StatusOr<ZipArchive> ZipArchive::open(absl::string_view bytes) {
 
 absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   Reader in(bytes_, entry.header_at);
-  // Only the lengths of the name and of the extra field are used of the local header. They may
-  // differ from the lengths in the directory.
+  // The local header is needed for two lengths, that of the name and that of the extra field, which
+  // may differ from the lengths in the directory.
   const bool has_header = in.u32() == kLocalHeader;
   in.text(kLocalHeaderBytes - 4 - 2 - 2);  // all fields between the signature and the two lengths
   const std::uint32_t name_bytes = in.u16();

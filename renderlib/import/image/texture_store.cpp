@@ -23,9 +23,9 @@ namespace {
 using Format = ImageTexture::Format;
 using Wrap = ImageTexture::Wrap;
 
-/// Returns value number `number` of the image, counted over all channels of all texels. An 8-bit
-/// code of an sRGB image is decoded to a linear value if `decoded` is true; all other codes are
-/// divided by 255. A float that is not finite becomes 0.
+/// Returns a value of the image: value number `number` of the list of all channels of all texels.
+/// An 8-bit code of an sRGB image is decoded to a linear value if `decoded` is true; all other
+/// codes are divided by 255. A float that is not finite becomes 0.
 double channel(const ImageTexture& image, std::size_t number, bool decoded) {
   if (image.format == Format::kFloat32) {
     float value = 0;

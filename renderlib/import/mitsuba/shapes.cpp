@@ -82,8 +82,9 @@ SourceMesh cube_mesh() {
 constexpr int kSegments = 192;  ///< segments of round shapes that become meshes
 
 /// Adds a strip of triangles between two rows of kSegments + 1 vertices, which start at the indices
-/// `below` and `above`. Consider the side from which the rows run from left to right, with the row
-/// `above` on top. Seen from this side, the vertices of each triangle are counter-clockwise.
+/// `below` and `above`. A strip has two sides. From one of them, the rows run from left to right
+/// and the row `above` is on top. Seen from this side, the vertices of each triangle are
+/// counter-clockwise.
 void add_strip(std::uint32_t below, std::uint32_t above, PlyMesh& mesh) {
   for (std::uint32_t i = 0; i < kSegments; ++i) {
     mesh.triangles.push_back({below + i, below + i + 1, above + i + 1});

@@ -94,8 +94,8 @@ TEST(Offset, O2_NarrowGapsAreNotSkipped) {
                          "30,000 rays across gaps of 1e-4, 1e-6, 1e-9: every ray hits the sphere");
 }
 
-/// Returns a point on a light that belongs to no instance. `size`: the largest of the numbers from
-/// which the caller computed the position.
+/// Returns a point of a surface that belongs to no instance. `size`: the largest absolute value in
+/// the computation of the position, which determines its rounding error.
 SurfacePoint surface(const Vec3& position, const Vec3& normal, double size) {
   SurfacePoint p;
   p.position = position;

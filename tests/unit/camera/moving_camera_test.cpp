@@ -48,8 +48,8 @@ TEST(MovingCamera, EqualsTheStaticCamerasAtBothEnds) {
   expect_close(closing.direction, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
 }
 
-// A lens view describes all rays from the lens through one point in focus. In the middle of the
-// shutter interval, it finds the point of the lens from which such a ray starts.
+// A lens view describes all rays from the lens through one point in focus. For a ray in the middle
+// of the shutter interval, the view must find the point of the lens at which the ray starts.
 TEST(MovingCamera, TheLensViewAgreesWithTheRay) {
   PerspectiveCamera first = at(0);
   first.aperture = 0.4;
