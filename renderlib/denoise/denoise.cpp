@@ -93,14 +93,14 @@ class Selection {
   };
   Excess excess_of(const Map& filtered, const Map& rendered) const;
   /// Sets shares_: at each pixel, chooses the filter with the smaller estimated error, or the
-  /// rendered value if this error is larger than that of the rendered value by at least its
-  /// standard error. Then smooths the choices. Without the standard error, a single pixel could
-  /// make the 25 pixels around it stay noisy.
+  /// rendered value if this error is larger than that of the rendered value by more than the
+  /// standard error of the difference. Then smooths the choices. Without the standard error, a
+  /// single pixel could make the 25 pixels around it stay noisy.
   void choose();
   /// Returns true if the pixel stays as it was rendered.
   bool is_rendered(int x, int y) const;
-  /// Returns half `h` of the result at a pixel, for channel `c`.
-  float mixed(int x, int y, std::size_t h, std::size_t c) const;
+  /// Returns half `h` of the result at a pixel.
+  Rgb mixed(int x, int y, std::size_t h) const;
   /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves,
   /// weighted by their shares of the samples.
   Rgb value_of(int x, int y) const;
@@ -190,13 +190,16 @@ void Selection::choose() {
   }
 }
 
-float Selection::mixed(int x, int y, std::size_t h, std::size_t c) const {
+Rgb Selection::mixed(int x, int y, std::size_t h) const {
   const std::size_t i = size_.index(x, y);
-  float value = shares_[0][i] * half(h, c, x, y);
-  for (std::size_t k = 0; k < kFilters; ++k) {
-    value += shares_[k + 1][i] * strip_.fits[k].halves[h][c][i];
-  }
-  return value;
+  const auto channel = [&](std::size_t c) {
+    float value = shares_[0][i] * half(h, c, x, y);
+    for (std::size_t k = 0; k < kFilters; ++k) {
+      value += shares_[k + 1][i] * strip_.fits[k].halves[h][c][i];
+    }
+    return value;
+  };
+  return {channel(0), channel(1), channel(2)};
 }
 
 bool Selection::is_rendered(int x, int y) const {
@@ -209,11 +212,7 @@ Rgb Selection::value_of(int x, int y) const {
   if (is_rendered(x, y)) {
     return strip_.input.mean.pixels[at];
   }
-  const float share = strip_.input.first_share[at];
-  const auto value = [&](std::size_t c) {
-    return share * mixed(x, y, 0, c) + (1 - share) * mixed(x, y, 1, c);
-  };
-  return {value(0), value(1), value(2)};
+  return lerp(mixed(x, y, 1), mixed(x, y, 0), strip_.input.first_share[at]);
 }
 
 RowInParts Selection::row_in_parts(int y) const {
@@ -221,13 +220,8 @@ RowInParts Selection::row_in_parts(int y) const {
   for (int x = 0; x < size_.width; ++x) {
     std::optional<PixelInParts>& pixel = row[static_cast<std::size_t>(x)];
     pixel = rendered_in_parts(strip_.input, in_image(x, y));
-    if (!pixel || is_rendered(x, y)) {
-      continue;
-    }
-    pixel->rendered = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      pixel->channels[c].a = mixed(x, y, 0, c);
-      pixel->channels[c].b = mixed(x, y, 1, c);
+    if (pixel && !is_rendered(x, y)) {
+      pixel->set_filtered(mixed(x, y, 0), mixed(x, y, 1));
     }
   }
   return row;

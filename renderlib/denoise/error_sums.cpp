@@ -16,6 +16,14 @@ float channel(const Rgb& color, std::size_t c) {
 
 }  // namespace
 
+void PixelInParts::set_filtered(const Rgb& a, const Rgb& b) {
+  rendered = false;
+  for (std::size_t c = 0; c < 3; ++c) {
+    channels[c].a = channel(a, c);
+    channels[c].b = channel(b, c);
+  }
+}
+
 std::optional<PixelInParts> rendered_in_parts(const DenoiseInput& input, std::size_t at) {
   const float share = input.first_share[at];
   if (!(share > 0 && share < 1)) {

@@ -20,6 +20,9 @@ namespace bandsaw {
 struct PixelInParts {
   bool rendered = false;  ///< the pixel stays as it was rendered
   std::array<InParts<double>, 3> channels;
+
+  /// Sets the values that were filtered from the first part (`a`) and from the second part (`b`).
+  void set_filtered(const Rgb& a, const Rgb& b);
 };
 
 /// Returns pixel number `at` of the image, staying as it was rendered. Returns std::nullopt if the

@@ -19,10 +19,6 @@ namespace {
 
 constexpr int kSmoothing = 2;  ///< radius, in pixels, of the mean that smooths the map of errors
 
-bool finite(const Rgb& color) {
-  return std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b);
-}
-
 }  // namespace
 
 Image second_part(const DenoiseInput& input) {
@@ -49,7 +45,7 @@ void add_samples(const Image& image, double samples, Image further, double furth
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Rgb& mean = input.mean.pixels[i];
     const Rgb& more = further.pixels[i];
-    if (finite(mean) && finite(more)) {
+    if (is_finite(mean) && is_finite(more)) {
       mean = {mean.r + share * (more.r - mean.r), mean.g + share * (more.g - mean.g),
               mean.b + share * (more.b - mean.b)};
     } else {
@@ -68,17 +64,11 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
       const Rgb& a = clean_first.pixels[i];
       const Rgb& b = clean_second.pixels[i];
       std::optional<PixelInParts>& pixel = row.emplace_back();
-      if (finite(a) && finite(b)) {
+      if (is_finite(a) && is_finite(b)) {
         pixel = rendered_in_parts(input, i);
       }
       if (pixel) {
-        pixel->rendered = false;
-        pixel->channels[0].a = a.r;
-        pixel->channels[0].b = b.r;
-        pixel->channels[1].a = a.g;
-        pixel->channels[1].b = b.g;
-        pixel->channels[2].a = a.b;
-        pixel->channels[2].b = b.b;
+        pixel->set_filtered(a, b);
       }
     }
     return row;
