@@ -1,7 +1,7 @@
 #pragma once
 
 // The estimate of the error of filtered values, on which all errors of the denoiser are based
-// (denoise.cpp, halves.cpp). It compares a filtered part of the samples with the other part as
+// (denoise.cpp, error_sums.h). It compares a filtered part of the samples with the other part as
 // rendered.
 
 namespace bandsaw {

@@ -74,8 +74,8 @@ std::optional<BsdfSample> next_direction(const PathContext& context, const Surfa
     return std::nullopt;
   }
   const Sample4 numbers = context.numbers(group_bsdf(depth));
-  // Of the reflection and the refraction by glass, all samples follow the brighter one: the
-  // denoiser would take a random choice for detail.
+  // All samples follow the brighter of reflection and refraction by glass, because the denoiser
+  // would take a random choice for detail.
   const double lobe = is_smooth_glass(*bsdf) ? 0.5 : numbers[2];
   return bandsaw::sample(*bsdf, numbers[0], numbers[1], lobe);
 }

@@ -16,10 +16,9 @@ namespace bandsaw {
 /// before it. For kGuideShape, it is two coordinates of the normal, to the right and upwards in the
 /// camera's view, and the length of the path. If the path leaves the scene, the value for
 /// kGuideShape is (0.5, 0.5, 0). For kGuideAlbedo it is L / (1 + L), where L is the background's
-/// radiance times the tint. Follows the path through mirrors, smooth glass, panes and
-/// nearly smooth metal, at most kMaxGuideBounces times. In glass and panes it follows the brighter
-/// of reflection and refraction. All values are >= 0. Adds the number of
-/// rays to `rays`.
+/// radiance times the tint. Follows the path through mirrors, smooth glass, panes and nearly smooth
+/// metal, at most kMaxGuideBounces times. In glass and panes it follows the brighter of reflection
+/// and refraction. All values are >= 0. Adds the number of rays to `rays`.
 Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                 const PixelSampler& sampler, std::uint64_t sample, std::uint64_t& rays);
 

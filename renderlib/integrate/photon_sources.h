@@ -1,6 +1,6 @@
 #pragma once
 
-// The surfaces at which the photons of a scene's photon maps start. Other than in usual photon
+// The surfaces at which the photons of a scene's photon maps start. Unlike in usual photon
 // mapping, photons do not start at lights: a point of these surfaces is sampled, and the light that
 // arrives there is found by light sampling.
 

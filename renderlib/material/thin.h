@@ -21,7 +21,7 @@ struct ThinDielectricBsdf {
   double reflection = 0;      ///< probability with which the reflection is sampled
   bool free_passage = false;  ///< light that passes does not count towards max_depth
 };
-/// Returns the BSDF; `normal` is on the side of wo. sample() is that of material/bsdf.h.
+/// Returns the BSDF; `normal` is on the side of wo. material/bsdf.h documents sample().
 ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
                                    const Vec3& wo);
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& bsdf, double lobe);
@@ -35,8 +35,8 @@ struct DiffuseTransmissionBsdf {
 };
 
 /// Returns the BSDF; `normal` is on the side of wo. Where the sum of reflectance and transmittance
-/// exceeds 1 in a channel, both are scaled so that it is 1. sample() and evaluate() are those of
-/// material/bsdf.h.
+/// exceeds 1 in a channel, both are scaled so that it is 1. material/bsdf.h documents sample()
+/// and evaluate().
 DiffuseTransmissionBsdf diffuse_transmission(const SidedNormals& normal, const Rgb& reflectance,
                                              const Rgb& transmittance);
 std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& bsdf, double u, double v,

@@ -118,7 +118,8 @@ TEST(Halves, FurtherSamplesAndTheImageAreTheTwoPartsWithTheirErrors) {
   EXPECT_EQ(denoise(input, fit, pool).image.pixels[7], rendered.pixels[7]);
 }
 
-// The two parts of the samples are 1.1 and 0.9, so the error of their mean is 0.1.
+// The two parts of the samples are 1.1 and 0.9, or 0.9 and 1.1 in every second row. So the estimated
+// error of their mean is 0.1.
 TEST(Halves, LeaveOutPixelsThatAreNotFinite) {
   const Image mean{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};
   DenoiseInput input{mean, mean, std::vector<float>(kSide * kSide, 0.5f), mean, mean};
