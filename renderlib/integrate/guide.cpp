@@ -2,10 +2,14 @@
 // surface of another kind. Returns the albedo of that surface, or its shape (two coordinates of the
 // normal, and the length of the path). Pictures of these values are the guides of the denoiser:
 // they have hardly any noise, and the denoiser finds edges by them.
+//
+// guide_sample() takes more rays where their values differ. A wrong share of two surfaces in a
+// pixel at their common edge is an error that the denoiser cannot remove.
 
 #include "renderlib/integrate/guide.h"
 
 #include <algorithm>
+#include <limits>
 #include <variant>
 
 #include "renderlib/integrate/path_state.h"
@@ -80,12 +84,38 @@ std::optional<BsdfSample> next_direction(const PathContext& context, const Surfa
   return bandsaw::sample(*bsdf, numbers[0], numbers[1], lobe);
 }
 
+/// The range of the values of a pixel's rays.
+class GuideRange {
+ public:
+  void add(const Rgb& value) {
+    least_ = {std::min(least_.r, value.r), std::min(least_.g, value.g),
+              std::min(least_.b, value.b)};
+    most_ = {std::max(most_.r, value.r), std::max(most_.g, value.g), std::max(most_.b, value.b)};
+  }
+  /// Returns the largest difference of two values: of a channel of the albedo, or of a coordinate of
+  /// the normal or the distance. That of the distance is relative to the larger one.
+  float difference(Integrator integrator) const {
+    const float unit = integrator == kGuideShape ? std::max(most_.b, 1e-30f) : 1.0f;
+    return std::max({most_.r - least_.r, most_.g - least_.g, (most_.b - least_.b) / unit});
+  }
+
+ private:
+  static constexpr float kMost = std::numeric_limits<float>::max();
+  Rgb least_{kMost, kMost, kMost};
+  Rgb most_{};
+};
+
+/// Values that differ by at most this are alike; see GuideRange::difference().
+constexpr float kAlike = 0.06f;
+/// If values differ by more than this, a pixel takes all rays.
+constexpr float kSharp = 0.3f;
+
 }  // namespace
 
 Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
-                const PixelSampler& sampler, std::uint64_t sample_number, std::uint64_t& rays) {
+                const PixelSampler& sampler, std::uint64_t number, std::uint64_t& rays) {
   const PathOptions options{.max_depth = kMaxGuideBounces + 1};
-  const PathContext context{scene, sampler, sample_number, options, rays};
+  const PathContext context{scene, sampler, number, options, rays};
   PathState path(ray);
   const bool albedo = integrator == kGuideAlbedo;
   double distance = 0;
@@ -112,6 +142,36 @@ Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
     path.previous.delta = true;
     path.ray = spawn_ray(*hit, next->wi);
   }
+}
+
+Rgb guide_sample(const Scene& scene, Integrator integrator, const PixelSampler& sampler,
+                 std::uint64_t sample, GuideCamera camera, std::uint64_t& rays) {
+  GuideRange range;
+  const auto value = [&](std::uint64_t ray, double spread) {
+    const std::uint64_t number = sample * kMaxGuideRays + ray;
+    const Rgb found =
+        guide_value(scene, integrator, camera(number, spread), sampler, number, rays);
+    range.add(found);
+    return found;
+  };
+  Rgb sum{};
+  for (std::uint64_t ray = 0; ray < kProbeGuideRays; ++ray) {
+    sum += value(ray, kProbeSpread);
+  }
+  if (range.difference(integrator) <= kAlike) {
+    return sum * (1.0f / kProbeGuideRays);
+  }
+  sum = {};
+  std::uint64_t taken = 0;
+  for (; taken < kSomeGuideRays; ++taken) {
+    sum += value(taken, 1);
+  }
+  if (range.difference(integrator) > kSharp) {
+    for (; taken < kMaxGuideRays; ++taken) {
+      sum += value(taken, 1);
+    }
+  }
+  return sum * (1.0f / static_cast<float>(taken));
 }
 
 }  // namespace bandsaw

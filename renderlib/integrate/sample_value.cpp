@@ -1,10 +1,9 @@
-// Selects the function of the integrator: path tracing, a guide (an auxiliary image for the
-// denoiser), or a picture of the first surface (normal, depth, albedo or ambient occlusion).
+// Selects the function of the integrator: path tracing, or a picture of the first surface
+// (normal, depth, albedo or ambient occlusion).
 
 #include "renderlib/integrate/sample_value.h"
 
 #include "renderlib/geometry/surface.h"
-#include "renderlib/integrate/guide.h"
 #include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/material/albedo.h"
@@ -66,9 +65,6 @@ Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& cam
                  PathCounts& counts) {
   if (computes_radiance(integrator)) {
     return path_radiance(scene, camera_ray, sampler, sample, options, counts);
-  }
-  if (is_guide(integrator)) {
-    return guide_value(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);
   }
   return value_at(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);
 }

@@ -11,9 +11,9 @@
 namespace bandsaw {
 
 /// Returns the sample's value; the arguments are those of `path_radiance()`. Integrators that do
-/// not compute radiance ignore `options`. The guides, which are auxiliary images for the denoiser
-/// (guide.h), follow a path through mirrors and glass. Ambient occlusion traces the camera ray and
-/// one more ray. The remaining integrators trace only the camera ray.
+/// not compute radiance ignore `options`. Ambient occlusion traces the camera ray and one more ray.
+/// The remaining integrators trace only the camera ray. `integrator` MUST NOT be a guide, which is
+/// an auxiliary image for the denoiser (guide.h).
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);

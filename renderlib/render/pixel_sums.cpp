@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderlib/integrate/guide.h"
 #include "renderlib/integrate/sample_value.h"
 
 namespace bandsaw {
@@ -142,8 +143,18 @@ PixelSums::Sums PixelSums::leaf(absl::Span<const PixelPlace> places, const Sampl
 
 void PixelSums::sample(absl::Span<const PixelPlace> places, std::uint64_t sample,
                        absl::Span<ReusePixel> pixels) const {
+  if (is_guide(settings_.integrator)) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const auto camera = [&](std::uint64_t number, double spread) {
+        return camera_ray(pixels[i].sampler, places[i], number, spread).ray;
+      };
+      pixels[i].radiance = guide_sample(scene_, settings_.integrator, pixels[i].sampler, sample,
+                                        camera, pixels[i].counts.rays);
+    }
+    return;
+  }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    pixels[i].camera_ray = camera_ray(pixels[i].sampler, places[i], sample);
+    pixels[i].camera_ray = camera_ray(pixels[i].sampler, places[i], sample, /*spread=*/1);
   }
   if (reuses_paths_) {
     radiance_with_reuse(scene_, pixels, sample, options_);
@@ -156,11 +167,11 @@ void PixelSums::sample(absl::Span<const PixelPlace> places, std::uint64_t sample
 }
 
 CameraRay PixelSums::camera_ray(const PixelSampler& sampler, const PixelPlace& place,
-                                std::uint64_t sample) const {
+                                std::uint64_t sample, double spread) const {
   const Sample4 at = sampler.group(sample, kGroupCamera);
   const Vec2 offset = bandsaw::sample(scene_.filter(), at[0], at[1]);
   const double when = scene_.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
-  const Vec2 point{place.x + 0.5 + offset.x, place.y + 0.5 + offset.y};
+  const Vec2 point{place.x + 0.5 + spread * offset.x, place.y + 0.5 + spread * offset.y};
   CameraRay ray(camera_.ray(point.x, point.y, at[2], at[3], when));
   if (samples_through_lens_) {
     ray.lens = camera_.lens_view(point.x, point.y, when);

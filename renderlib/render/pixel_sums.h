@@ -74,8 +74,10 @@ class PixelSums {
   /// Takes one sample of each pixel, and stores the radiance of each sample in `pixels`.
   void sample(absl::Span<const PixelPlace> places, std::uint64_t sample,
               absl::Span<ReusePixel> pixels) const;
-  CameraRay camera_ray(const PixelSampler& sampler, const PixelPlace& place,
-                       std::uint64_t sample) const;
+  /// Returns the camera ray of a sample. Its distance from the centre of the pixel, as sampled from
+  /// the pixel filter, is multiplied by `spread`.
+  CameraRay camera_ray(const PixelSampler& sampler, const PixelPlace& place, std::uint64_t sample,
+                       double spread) const;
 
   const Scene& scene_;
   RenderSettings settings_;

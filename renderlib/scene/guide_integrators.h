@@ -4,6 +4,8 @@
 // the denoiser finds edges (integrate/guide.h). Users cannot select these integrators, and no scene
 // has one of them as its default.
 
+#include <cstdint>
+
 #include "renderlib/scene/integrator.h"
 
 namespace bandsaw {
@@ -18,6 +20,10 @@ inline constexpr Integrator kGuideAlbedo{10};
 /// surface, the values are (0.5, 0.5, 0).
 inline constexpr Integrator kGuideShape{11};
 inline constexpr int kLastGuideIntegrator = 11;
+
+/// The number of samples per pixel of a guide. A sample takes as many camera rays as the pixel needs
+/// (guide_sample in integrate/guide.h).
+inline constexpr std::uint64_t kGuideSamples = 1;
 
 constexpr bool is_guide(Integrator integrator) {
   return integrator == kGuideAlbedo || integrator == kGuideShape;

@@ -21,9 +21,6 @@ namespace bandsaw::coordinator {
 /// MUST outlive the object.
 class CleanPreview {
  public:
-  /// Samples per pixel of the guides. With many more, the preview would cost as much as the image.
-  static constexpr std::uint64_t kGuideSamples = 4;
-
   CleanPreview(const Scene& scene, const RenderSettings& settings, Pool& pool,
                const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}

@@ -5,9 +5,6 @@
 
 #include "coordinator/scheduler/api/clean_jobs.h"
 
-#include <algorithm>
-#include <bit>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "proto/wire/limits.h"
@@ -56,21 +53,13 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
   return absl::OkStatus();
 }
 
-GuideSamples guide_samples(std::uint64_t samples) {
-  const std::uint64_t quarter = std::bit_floor(samples / 4);
-  const std::uint64_t albedo = std::clamp(quarter, kMinAlbedoSamples, kMaxAlbedoSamples);
-  return {.albedo = std::min(samples, albedo),
-          .shape = std::min(samples, std::max(albedo / 2, kMinShapeSamples))};
-}
-
 std::uint64_t further_samples(std::uint64_t samples) {
   return samples <= kBlockSamples ? samples / 2 : 0;
 }
 
 CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples) {
-  const GuideSamples guides = guide_samples(samples);
-  CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, guides.albedo, " (guide: albedo)"),
-                 .shape = beside(of, kGuideShape, guides.shape, " (guide: shape)"),
+  CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, kGuideSamples, " (guide: albedo)"),
+                 .shape = beside(of, kGuideShape, kGuideSamples, " (guide: shape)"),
                  .further = std::nullopt};
   if (const std::uint64_t further = further_samples(samples); further > 0) {
     JobSpec other_seed = of;

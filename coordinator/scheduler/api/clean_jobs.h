@@ -19,26 +19,6 @@ namespace bandsaw::coordinator {
 /// be, `name` is shortened by whole characters.
 std::string with_suffix(const std::string& name, const std::string& suffix);
 
-/// Bounds of the number of samples of the guides.
-inline constexpr std::uint64_t kMinAlbedoSamples = 8;
-inline constexpr std::uint64_t kMaxAlbedoSamples = 32;
-inline constexpr std::uint64_t kMinShapeSamples = 4;
-
-/// Numbers of samples per pixel of the guides.
-struct GuideSamples {
-  std::uint64_t albedo = 0;
-  std::uint64_t shape = 0;  ///< of the guide of normals and distances
-};
-
-/// Returns the numbers of samples of the guides of an image with `samples` samples per pixel, where
-/// `samples` is at least 1. The albedo gets about a quarter of `samples`, within the bounds. The
-/// shape gets half of that, because it has less detail than the albedo, but at least
-/// kMinShapeSamples. Neither gets more than `samples`. More samples would improve the clean image
-/// too little for the time that they cost (renderlib/denoise/NOTES.md). The numbers are powers of
-/// two unless the image has fewer than 8 samples. So they rarely change when an image is rendered
-/// further, and new guides are rarely needed.
-GuideSamples guide_samples(std::uint64_t samples);
-
 /// Checks if an image with this many samples per pixel can be denoised. FAILED_PRECONDITION: the
 /// integrator computes no radiance, or the pixels have a single sample.
 absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples);

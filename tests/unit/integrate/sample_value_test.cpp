@@ -1,6 +1,5 @@
 // Tests the integrators other than `path`: normals, depth, albedo, ambient occlusion and direct
-// light. Tests also the guides of the denoiser: an image of the albedo, and an image of the normal
-// and the distance (`shape`).
+// light.
 
 #include "renderlib/integrate/sample_value.h"
 
@@ -8,7 +7,6 @@
 
 #include <cmath>
 
-#include "renderlib/scene/guide_integrators.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -57,46 +55,6 @@ TEST(SampleValue, NormalsDepthAndAlbedoAreThoseOfTheFirstSurface) {
   maker.sphere({0.1, 0.2, 0}, 1, maker.metal(0.75f, 0.3));
   EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(4));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(0.75f));
-}
-
-TEST(SampleValue, GuidesAreThoseOfTheFirstSurfaceThatIsNoMirror) {
-  SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
-  EXPECT_EQ(value(maker, kGuideAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
-  // The blue channel of kGuideShape is the length of the path to the surface.
-  EXPECT_EQ(value(maker, kGuideShape, kAhead).b, 7);
-  // A mirror that faces the camera shows the wall behind it.
-  SceneMaker mirror;
-  wall(mirror, mirror.metal(0.5f, 0), 0);
-  wall(mirror, mirror.diffuse({0.2f, 0.4f, 0.6f}), 8);
-  EXPECT_EQ(value(mirror, kGuideAlbedo, kAhead), (Rgb{0.1f, 0.2f, 0.3f}));
-  EXPECT_NEAR(value(mirror, kGuideShape, kAhead).b, 5 + 8, 1e-4);
-}
-
-TEST(SampleValue, GuidesFollowTheBrighterOfReflectionAndRefractionInGlass) {
-  SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
-  maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
-  // Straight ahead, nearly all light is refracted: the guides show the wall behind the sphere.
-  // At the edge of the sphere, nearly all light is reflected, past the sphere to the wall.
-  const Ray edge{.origin = {0.9999, 0, 5}, .direction = {0, 0, -1}};
-  for (const Ray& ray : {kAhead, edge}) {
-    for (std::uint64_t sample = 0; sample < 100; ++sample) {
-      EXPECT_EQ(value(maker, kGuideAlbedo, ray, sample), (Rgb{0.2f, 0.4f, 0.6f})) << sample;
-      EXPECT_EQ(value(maker, kGuideShape, ray, sample), value(maker, kGuideShape, ray)) << sample;
-    }
-  }
-}
-
-TEST(SampleValue, GuidesShowWhatIsBehindAPane) {
-  SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
-  wall(maker, maker.material(ThinDielectric{.transmission = gray(0.5f)}), 1);
-  for (std::uint64_t sample = 0; sample < 100; ++sample) {
-    EXPECT_EQ(value(maker, kGuideShape, kAhead, sample).b, 7) << sample;
-    // The pane's own albedo is near white.
-    EXPECT_LT(value(maker, kGuideAlbedo, kAhead, sample).r, 0.11f) << sample;
-  }
 }
 
 TEST(SampleValue, TheAlbedoOfAnEmitterIsClampedAndTheAlbedoOfGlassIsWhite) {

@@ -6,9 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-#include <utility>
-
 #include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
@@ -26,13 +23,13 @@ TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
   const CleanJobs many = clean_jobs(job(), 64);
   EXPECT_EQ(many.albedo.settings.integrator, kGuideAlbedo);
   EXPECT_EQ(many.shape.settings.integrator, kGuideShape);
-  EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{16}));
-  EXPECT_EQ(many.shape.stop, StopRule(StopAtSamples{8}));
+  EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{1}));
+  EXPECT_EQ(many.shape.stop, StopRule(StopAtSamples{1}));
   EXPECT_EQ(many.albedo.settings.seed, 3u);
   EXPECT_FALSE(many.further);
   const CleanJobs few = clean_jobs(job(), 7);
-  EXPECT_EQ(few.albedo.stop, StopRule(StopAtSamples{7}));
-  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{4}));
+  EXPECT_EQ(few.albedo.stop, StopRule(StopAtSamples{1}));
+  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{1}));
   ASSERT_TRUE(few.further);
   EXPECT_EQ(few.further->stop, StopRule(StopAtSamples{3}));
   EXPECT_NE(few.further->settings.seed, 3u) << "the samples must be independent";
@@ -40,29 +37,15 @@ TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
   EXPECT_EQ(few.further->settings.integrator, Integrator::kPath);
 }
 
-// The quarter is rounded down to a power of two and limited to 8 to 32 samples. The guides never
-// have more samples than the image.
-TEST(CleanJobs, TheAlbedoHasAQuarterOfTheSamplesWithinBoundsAndTheShapeHalfOfThat) {
-  const std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> expected = {
-      {1, {1, 1}},  {3, {3, 3}},   {7, {7, 4}},    {8, {8, 4}},     {16, {8, 4}},
-      {63, {8, 4}}, {64, {16, 8}}, {127, {16, 8}}, {128, {32, 16}}, {1 << 20, {32, 16}}};
-  for (const auto& [samples, of_guides] : expected) {
-    EXPECT_EQ(guide_samples(samples).albedo, of_guides.first) << samples;
-    EXPECT_EQ(guide_samples(samples).shape, of_guides.second) << samples;
-  }
-}
-
-// Jobs with the same request id are one job. The guides of an image of 128 or 4,096 samples have 32
-// samples, and the guides of an image of 127 samples have 16.
+// Jobs with the same request id are one job.
 TEST(CleanJobs, AreTheSameForAllImagesThatNeedThem) {
   JobSpec other = job();
   other.request_id = "fedcba9876543210";
   other.name = "another name";
   other.stop = StopAtTime{5};
   const CleanJobs jobs = clean_jobs(job(), 128);
-  EXPECT_EQ(clean_jobs(other, 4096).albedo.request_id, jobs.albedo.request_id);
+  EXPECT_EQ(clean_jobs(other, 3).albedo.request_id, jobs.albedo.request_id);
   EXPECT_NE(jobs.shape.request_id, jobs.albedo.request_id);
-  EXPECT_NE(clean_jobs(job(), 127).albedo.request_id, jobs.albedo.request_id);
   other.settings.seed = 4;
   EXPECT_NE(clean_jobs(other, 128).albedo.request_id, jobs.albedo.request_id);
   EXPECT_GE(jobs.albedo.request_id.size(), 16u);

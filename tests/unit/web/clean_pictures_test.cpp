@@ -1,6 +1,6 @@
 // Denoised ("clean") pictures of finished jobs, for which the farm first renders the guides: images
 // of the albedo and of the normals of the surfaces. In these tests, the guides of job n are the
-// jobs n + 1 and n + 2. Each has 16 samples, a quarter of the 64 samples of job n.
+// jobs n + 1 and n + 2. Each has one sample.
 
 #include "coordinator/web/clean_pictures.h"
 
@@ -42,9 +42,9 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // starts no more jobs
   EXPECT_EQ(state(job).state(), "guides");
-  finish(job + 1, 24, 16, /*samples=*/16);
+  finish(job + 1, 24, 16, /*samples=*/1);
   EXPECT_EQ(state(job).fraction(), 0.5);
-  finish(job + 2, 24, 16, /*samples=*/16);
+  finish(job + 2, 24, 16, /*samples=*/1);
   const web::CleanPicture ready = wait_until_filtered(job);
   EXPECT_EQ(ready.state(), "ready") << ready.reason();
   EXPECT_EQ(ready.relative_rmse_raw(), 0);  // all samples are equal
@@ -70,8 +70,8 @@ TEST_F(CleanPicturesTest, SayWhyTheyFailedAndAreTriedAgain) {
   EXPECT_EQ(failed.state(), "failed");
   EXPECT_THAT(failed.reason(), HasSubstr("cancelled"));
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
-  finish(job + 1, 24, 16, /*samples=*/16);
-  finish(job + 3, 24, 16, /*samples=*/16);  // replaces the cancelled guide
+  finish(job + 1, 24, 16, /*samples=*/1);
+  finish(job + 3, 24, 16, /*samples=*/1);  // replaces the cancelled guide
   EXPECT_EQ(wait_until_filtered(job).state(), "ready");
 }
 

@@ -186,7 +186,7 @@ TEST_F(RoutesTest, AnImageForWhichNoMemoryIsLeftIsRefused) {
 TEST_F(RoutesTest, ADoneJobDoesNotShowAnOlderPicture) {
   const std::uint64_t job = submit_box();
   const std::string path = absl::StrCat("/api/jobs/", job, "/preview.png?side=");
-  put(job, 24, 16, /*first=*/0, /*value=*/0.1);
+  put(job, 24, 16, {0, 8}, /*value=*/0.1);
   const auto early = get(path + "64");
   ASSERT_TRUE(early);
   ASSERT_EQ(early->status, 200);

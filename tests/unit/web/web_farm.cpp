@@ -4,6 +4,7 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -115,11 +116,12 @@ std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
 }
 
-void WebTest::put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
-                  double value) {
-  const BandPixels pixels{.band = {.samples = {first, first + 8}, .rows = {0, height}},
+void WebTest::put(std::uint64_t job, std::uint32_t width, std::uint32_t height,
+                  const SampleRange& samples, double value) {
+  const double sum = static_cast<double>(samples.samples()) * value;
+  const BandPixels pixels{.band = {.samples = samples, .rows = {0, height}},
                           .width = width,
-                          .sums = std::vector<double>(std::size_t{width} * height * 3, 8 * value),
+                          .sums = std::vector<double>(std::size_t{width} * height * 3, sum),
                           .counters = {}};
   using Put = absl::StatusOr<BandOutcome>;
   const Put outcome = blocking_call<Put>([&](auto answer) {
@@ -131,8 +133,9 @@ void WebTest::put(std::uint64_t job, std::uint32_t width, std::uint32_t height, 
 
 void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
                      std::uint64_t samples, std::uint64_t first) {
-  for (std::uint64_t sample = first; sample < samples; sample += 8) {
-    ASSERT_NO_FATAL_FAILURE(put(job, width, height, sample, 0.5));
+  for (std::uint64_t sample = first; sample < samples; sample += kBlockSamples) {
+    const SampleRange band{sample, std::min(sample + kBlockSamples, samples)};
+    ASSERT_NO_FATAL_FAILURE(put(job, width, height, band, 0.5));
   }
   const auto done = std::make_shared<std::promise<void>>();
   engine_->watch(job, [done](const absl::StatusOr<JobView>& view) {

@@ -13,6 +13,7 @@
 #include "coordinator/web/dashboard.h"
 #include "proto/link/identity.h"
 #include "proto/web.pb.h"
+#include "renderlib/render/band.h"
 #include "tests/support/http_client.h"
 #include "tests/support/temp_dir.h"
 
@@ -38,12 +39,12 @@ class WebTest : public ::testing::Test {
   /// Submits a job of 24 x 16 pixels, which no worker renders; returns its id. log_in() MUST have
   /// been called.
   std::uint64_t submit_box();
-  /// Uploads a band of a job: the samples [first, first + 8) of all rows. Each pixel's value is
+  /// Uploads a band of a job: some samples, at most a block of 8, of all rows. Each pixel's value is
   /// `value`.
-  void put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
-           double value);
-  /// Uploads the samples [first, samples) of a job and waits until the job is done. Both numbers
-  /// MUST be multiples of 8. Each pixel's value is 0.5.
+  void put(std::uint64_t job, std::uint32_t width, std::uint32_t height,
+           const SampleRange& samples, double value);
+  /// Uploads the samples [first, samples) of a job and waits until the job is done. `first` MUST be
+  /// a multiple of 8. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
               std::uint64_t samples = 64, std::uint64_t first = 0);
   /// Parses the body of an answer, the JSON of a message. Fails the test if the body is no such
