@@ -26,8 +26,8 @@ struct BrowserSocketLimits {
   std::chrono::milliseconds write{10'000};
   /// Bytes that the system keeps for a browser that does not read.
   int send_buffer = 64 << 10;
-  /// Interval at which the server checks that the link with which each session joined is still
-  /// valid.
+  /// Interval at which the server checks whether the invitation link by which each browser joined
+  /// is still valid.
   std::chrono::milliseconds link_check{500};
   /// Time in which the sessions may close when the server stops.
   std::chrono::milliseconds stop{1'000};

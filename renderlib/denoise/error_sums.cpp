@@ -1,4 +1,6 @@
-// Sums of errors over the rows of an image, and the errors of the whole image from these sums.
+// Estimates the errors of an image as rendered ("raw") and without noise ("clean"). The samples of
+// each pixel are in two parts. Each pixel adds its estimates (squared_error.h) to the sums of its
+// row, and total_of() computes the errors of the whole image from the sums of all rows.
 
 #include "renderlib/denoise/error_sums.h"
 
@@ -69,7 +71,7 @@ void RowSums::add_bias(const PixelInParts& pixel, const std::optional<PixelInPar
   if (!neighbour) {
     return;
   }
-  pairs += 3;
+  pairs += 3;  // one for each channel
   if (!pixel.rendered && !neighbour->rendered) {
     for (std::size_t c = 0; c < 3; ++c) {
       bias += common_bias(pixel.channels[c], neighbour->channels[c]);
@@ -97,9 +99,13 @@ CleanError total_of(absl::Span<const RowSums> rows, double rendered_share) {
     all.add(row);
   }
   const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
-  // A pair stands for a pixel, because most pixels have two pairs and two pixels share each pair.
+  // The mean over all pairs of neighbours, times the number of values.
   const double bias = all.pairs > 0 ? all.bias * (count / static_cast<double>(all.pairs)) : 0;
+  // Two estimates of the error, of which the larger one is taken (README.md, "The estimated
+  // error").
   all.clean = std::max(all.clean, all.variance + std::max(0.0, bias));
+  // Noise is inversely proportional to the number of samples, and the image as rendered has only
+  // `rendered_share` of them.
   return {.mean = all.value / count,
           .rmse_raw = std::sqrt(all.raw / count / rendered_share),
           .rmse_clean = std::sqrt(all.clean / count),

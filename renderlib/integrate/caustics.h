@@ -13,11 +13,12 @@
 // counted from the receiver towards the light.
 //
 // The photon map already contains the light that emissive surfaces send to the casters of a chain:
-// the photons of a caster get this light by light sampling at the caster. If path tracing added the
-// same light, it would count twice. So path tracing samples no emissive surface at the casters of a
-// chain. If a path hits an emissive surface directly after a caster, and light sampling at this
-// caster can choose this surface, the path ignores the emission. Delta lights, environments and
-// backgrounds are sampled as without photon maps.
+// a photon starts at a random point of a caster, and light sampling at this point gives its power
+// (photon_start.h). If path tracing added the same light, it would count twice. So path tracing
+// samples no emissive surface at the casters of a chain. If a path hits an emissive surface
+// directly after a caster, and light sampling at this caster can choose this surface, the path
+// ignores the emission. Delta lights, environments and backgrounds are sampled as without photon
+// maps.
 
 #include <cstdint>
 #include <utility>

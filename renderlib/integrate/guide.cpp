@@ -92,8 +92,8 @@ class GuideRange {
               std::min(least_.b, value.b)};
     most_ = {std::max(most_.r, value.r), std::max(most_.g, value.g), std::max(most_.b, value.b)};
   }
-  /// Returns the largest difference of two values: of a channel of the albedo, or of a coordinate of
-  /// the normal or the distance. That of the distance is relative to the larger one.
+  /// Returns the largest difference of two values: of a channel of the albedo, or of a coordinate
+  /// of the normal or the distance. That of the distance is relative to the larger one.
   float difference(Integrator integrator) const {
     const float unit = integrator == kGuideShape ? std::max(most_.b, 1e-30f) : 1.0f;
     return std::max({most_.r - least_.r, most_.g - least_.g, (most_.b - least_.b) / unit});
@@ -149,8 +149,7 @@ Rgb guide_sample(const Scene& scene, Integrator integrator, const PixelSampler& 
   GuideRange range;
   const auto value = [&](std::uint64_t ray, double spread) {
     const std::uint64_t number = sample * kMaxGuideRays + ray;
-    const Rgb found =
-        guide_value(scene, integrator, camera(number, spread), sampler, number, rays);
+    const Rgb found = guide_value(scene, integrator, camera(number, spread), sampler, number, rays);
     range.add(found);
     return found;
   };

@@ -25,13 +25,14 @@ constexpr std::uint64_t kSamples = 8;
 /// noise of black pixels is not visible.
 constexpr double kDarkest = 1.0 / 16;
 
-/// If the cells of paths would remove less than this share of the variance, they cost more than
-/// they gain (NOTES.md, "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and
-/// kMinShareOfPhotons for the cells of photons.
+/// If the cells of paths would remove less than this share (share_of) of the variance, they cost
+/// more than they gain (NOTES.md, "Whether it pays").
 constexpr double kMinShareOfPaths = 0.15;
 /// If the variance is above this, the cells of paths pay, whatever the field predicts. In such a
 /// scene, too few paths of the training have found light for the field to predict the gain.
 constexpr double kRareLight = 1.5;
+/// The part of the caustics in the variance above which photon maps pay, and the larger one above
+/// which guiding by the cells of photons pays as well.
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
 
@@ -40,9 +41,9 @@ constexpr double kMinShareOfPhotons = 0.2;
 constexpr double kHard = 0.3;
 constexpr double kMinGainOfGathering = 1.7;
 
-/// The cells of photons hold a second moment that is too small, because the cone of a cell spreads
-/// the light of a lamp over more directions than the lamp fills. The moment of the lamp's light is
-/// at least this many times as large.
+/// A cell of photons stores the directions of its light as a cone, which is wider than the lamp
+/// from which the light comes. So the second moment that the cell holds is too small. The true one
+/// is at least this factor times the stored one.
 constexpr double kMomentOfLamp = 2;
 
 /// Sums over the samples of a pixel.

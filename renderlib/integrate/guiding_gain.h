@@ -33,7 +33,8 @@ struct GuidingGain {
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
 
-  /// Returns the share of `part` in the sum of `part` and the measured variance, in [0, 1].
+  /// Returns the share of `part` in the sum of `part` and the measured variance, in [0, 1]. The sum
+  /// is the divisor because the few measured samples may have missed the light of `part`.
   double share_of(double part) const;
   /// Each returns true if its method saves more variance than it costs in time.
   bool paths_pay() const;    ///< guiding by the cells of paths

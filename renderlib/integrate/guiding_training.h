@@ -27,8 +27,8 @@ namespace bandsaw {
 ///
 /// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay. If
 /// a field does not pay, it stays empty. If `photon_maps` is true and photon maps pay, the paths of
-/// the training take caustics (caustics.h) and indirect light (indirect_photons.h) from them. Then
-/// TrainedGuiding::sources is set, and all paths that use the field MUST have photon maps too.
+/// the training take caustics (caustics.h) and indirect light (indirect_photons.h) from these maps.
+/// Then TrainedGuiding::sources is set, and all paths that use the field MUST have photon maps too.
 /// Returns nullptr if the preparation was stopped.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     const Preparation& preparation,

@@ -1,5 +1,5 @@
-// Counts the primitives that Lights would number: all shapes that are not in an instance, and all
-// primitives of each instance that emits light anywhere.
+// Counts the primitives to which the class Lights would give numbers: all shapes that are not in an
+// instance, and all primitives of each instance that emits light anywhere.
 
 #include "renderlib/light/check_light_counts.h"
 
@@ -29,7 +29,7 @@ std::vector<bool> emitting_groups(const Geometry& geometry, const Emits& emits) 
   return groups;
 }
 
-/// Returns the number of primitives that `Lights` numbers.
+/// Returns the number of primitives to which `Lights` gives numbers.
 std::uint64_t numbered(const Geometry& geometry, const Emits& emits) {
   const std::vector<bool> groups = emitting_groups(geometry, emits);
   std::uint64_t count = geometry.size();
@@ -65,8 +65,8 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
   }
   return absl::InvalidArgumentError(absl::StrCat(
       "lights: there are ", count,
-      " primitives of instances that emit light, shapes outside of instances and lights without "
-      "size; at most ",
+      " primitives (all shapes outside of instances, all primitives of instances that emit light, "
+      "and all lights without size), and at most ",
       kMaxLights,
       " are possible: use fewer instances that emit light, or fewer primitives in them"));
 }

@@ -6,9 +6,10 @@
 //
 // With Owen-scrambled points, an estimate from the variance of single samples would be 3 to 54
 // times too large. So the estimate is made from the difference of the two halves of a power-of-two
-// number of samples. This difference is at least as large as the difference between independent
-// halves with the same error. The estimate is right for pure noise, and up to about 2.5 times too
-// large where sampling is well stratified.
+// number of samples. If the halves were independent, the variance of this difference would be four
+// times that of their mean. The halves of one sequence are not independent: where sampling is well
+// stratified, their errors partly cancel in the mean. So the estimate is right for pure noise, and
+// up to about 2.5 times too large where sampling is well stratified.
 //
 // An estimate scatters. The error of one image scatters too, around the mean over all seeds. A job
 // that stops as soon as the estimate is small enough often stops when the estimate happens to be

@@ -1,7 +1,7 @@
 #pragma once
 
-// For growth_bench, which measures how time and memory grow with a scene: does work in a child
-// process, so that the peak memory does not include other work.
+// Does work in a child process, so that the measured peak memory does not include other work.
+// growth_bench uses it to measure how time and memory grow with a scene.
 
 #include <functional>
 

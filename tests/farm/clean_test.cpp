@@ -124,7 +124,7 @@ TEST_F(CleanImages, AreRefusedForADepthImageAndForOneSample) {
   EXPECT_NE(refused.err.find("not cleaned"), std::string::npos) << refused.err;
   const Finished jobs = run(farm_.command({"jobs"}));
   EXPECT_EQ(jobs.out.find("spheres"), std::string::npos) << jobs.out;
-  // A job with one sample was submitted without --denoise.
+  // Submits a job with one sample without --denoise; watch --denoise then refuses it.
   run_on_farm({"submit", std::string(BANDSAW_GALLERY) + "/spheres.textproto", "--width", "16",
                "--samples", "1", "--quiet", "-o", farm_.path("one.png")});
   const Finished one =

@@ -76,8 +76,9 @@ TEST(SphericalRectangle, L5_SmallRectanglesKeepTheirSolidAngle) {
       error.see(std::abs(static_cast<double>(seen->solid_angle() / solid_angle(h, aside) - 1)));
     }
     test::at_most("L5",
-                  aside == 0 ? "relative error of solid angles of 4e-4 to 4e-8 sr straight ahead"
-                             : "relative error of solid angles 3 to the side at height 1",
+                  aside == 0
+                      ? "relative error of solid angles of 4e-4 to 4e-8 sr straight ahead"
+                      : "relative error of solid angles of quads 3 units to the side at height 1",
                   error.value(), 1e-11);
   }
 }

@@ -45,7 +45,7 @@ const Portals& some_portals() {
   return portals;
 }
 
-TEST(PortalsInScenes, AUniformSkyHasItsClosedForm) {
+TEST(PortalsInScenes, TheRadianceUnderAUniformSkyIsThatOfTheClosedForm) {
   test::SceneMaker maker = floor_under_sky();
   maker.background({2, 2, 2}, {2, 2, 2});
   expect_radiance(*maker.build(), some_portals(), 1);

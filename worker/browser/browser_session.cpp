@@ -67,7 +67,8 @@ void BrowserSession::offer(std::uint32_t threads, std::uint64_t memory_bytes) {
 absl::StatusOr<BrowserOrders> BrowserSession::receive(const std::string& bytes) {
   farm::ToWorker message;
   if (!message.ParseFromString(bytes)) {
-    return absl::InvalidArgumentError("the coordinator sent bytes that are no message");
+    return absl::InvalidArgumentError(
+        "the coordinator sent bytes that are not a message of the protocol");
   }
   SessionEffects effects = session_.receive(message);
   BrowserOrders orders;
@@ -92,7 +93,7 @@ absl::Status BrowserSession::rendering(TaskId task, std::uint32_t rows_done,
                                        const std::string& counters) {
   farm::Counters added;
   if (!added.ParseFromString(counters)) {
-    return absl::InvalidArgumentError("the counters of the rows are no message");
+    return absl::InvalidArgumentError("the counters of the rows are not a message of the protocol");
   }
   session_.rendering(task, rows_done);
   if (const auto held = held_.find(task); held != held_.end()) {

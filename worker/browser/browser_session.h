@@ -43,7 +43,7 @@ class BrowserSession {
   /// Changes the number of threads and the memory that the next Hello offers. `memory_bytes`: the
   /// memory that scenes may take; 0: no limit.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
-  /// INVALID_ARGUMENT: the bytes are no message.
+  /// INVALID_ARGUMENT: the bytes are not a message of the protocol.
   absl::StatusOr<BrowserOrders> receive(const std::string& message);
   void disconnected() { session_.disconnected(); }
   std::string heartbeat() const;

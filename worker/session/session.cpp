@@ -214,7 +214,7 @@ bool Session::rendering(TaskId task, std::uint32_t rows_done) {
   }
   const bool first = held->stage != Stage::kRendering;
   held->stage = Stage::kRendering;
-  if (rows_done == 0) {
+  if (rows_done == 0) {  // rendering has begun, or the preparation has done a step
     ++held->prepared;
   }
   held->rows_done = std::max(held->rows_done, rows_done);  // calls may arrive out of order

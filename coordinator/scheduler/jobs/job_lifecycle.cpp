@@ -49,8 +49,9 @@ void JobLifecycle::advance(Job& job) {
 
 void JobLifecycle::pass_merged(const input::PassMerged& in) {
   Job* job = context_.jobs.find(in.job);
-  // An error of fewer samples than the last one is out of date. If an error is of more samples than
-  // are complete, some of the rows on which it was measured are free again.
+  // An error that was estimated from fewer samples than the newest known error is out of date. If
+  // it was estimated from more samples than are complete now, some of its rows have since been
+  // removed, because the machine that rendered them was wrong.
   if (job == nullptr || is_final(job->state) || in.samples < job->error_samples ||
       in.samples > job->complete_samples()) {
     return;

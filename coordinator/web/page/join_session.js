@@ -220,7 +220,7 @@ function receive(message) {
     orders = program.json("session_receive", session, message);
   } catch (error) {
     log(error.message);
-    socket.close(4000, "bytes that are no message");
+    socket.close(4000, "bytes that are not a message");
     return;
   }
   for (const task of orders.stop) drop(task);

@@ -19,7 +19,7 @@ export function login(done) {
   };
   return el("form.card.login", {onsubmit: submit},
     el("h1", {}, "Log in to the farm"),
-    el("p.soft", {}, "Paste the line of the file ", el("code", {}, "farm"), " in the coordinator's data folder, or open the link in the file ",
+    el("p.soft", {}, "Paste the line that is in the file ", el("code", {}, "farm"), " in the coordinator's data folder, or open the link in the file ",
       el("code", {}, "dashboard"), " beside it."),
     input, wrong, el("button.main", {type: "submit"}, "Log in"));
 }

@@ -60,7 +60,7 @@ bool needs_uv(const Object* bsdf, const Object* emitter) {
   if (bsdf == nullptr) {
     return false;
   }
-  // The direction of grooves follows u.
+  // The grooves of an anisotropic material run along u, so their directions need uv coordinates.
   const bool grooves = Parameters(*bsdf).has("anisotropic") || Parameters(*bsdf).has("alpha_u");
   if (grooves || uses_uv(Value(bsdf))) {
     return true;

@@ -1,5 +1,6 @@
-// Reads a model file: loads it with Assimp (a glTF file as a plain document, gltf/plain_gltf.h),
-// converts its materials, meshes and nodes in this order, and turns it upright.
+// Reads a model file: loads it with Assimp, converts its materials, meshes and nodes in this order,
+// and turns it upright. Assimp does not read a glTF file itself, but a plain copy of it without the
+// extensions and compression that Assimp does not know (gltf/plain_gltf.h).
 
 #include "renderlib/import/model/model.h"
 
@@ -225,8 +226,8 @@ void forget_files(Assimp::Importer& importer) {
 }
 
 /// Reads the file with the importer of `model`; returns nullptr on failure. Sets `refused` and
-/// `mtl` of `model`. For glTF, Assimp reads only the plain document, whose buffer is freed
-/// afterwards.
+/// `mtl` of `model`. For glTF, Assimp reads only the plain copy (`plain`), whose buffer is
+/// freed afterwards.
 const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& folder,
                               std::optional<gltf::PlainGltf>& plain, LoadedModel& model) {
   Assimp::Importer& importer = model.importer;

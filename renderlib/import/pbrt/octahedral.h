@@ -1,6 +1,7 @@
 #pragma once
 
-// Converts pbrt's images of the light from all directions to our environment maps.
+// Converts pbrt's environment images (an octahedral map in pbrt-v4, longitude and latitude in
+// pbrt-v3) to our environment maps.
 
 #include "renderlib/image/image.h"
 #include "renderlib/math/transform.h"

@@ -1,8 +1,8 @@
 #pragma once
 
-// Reads arguments of directives that are not parameters: names, numbers and transformations. Errors
-// are INVALID_ARGUMENT and name a file and a line. `place` is the place of the directive. The error
-// for a number that is broken or not finite names the place of the number instead.
+// Reads those arguments of directives that are not parameters: names, numbers and transformations.
+// Errors are INVALID_ARGUMENT and name a file and a line. `place` is the place of the directive.
+// The error for a number that is broken or not finite names the place of the number instead.
 
 #include <string>
 #include <vector>

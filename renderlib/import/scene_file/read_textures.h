@@ -12,7 +12,8 @@ namespace bandsaw {
 /// invalid.
 absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the texture that the message `in` defines or refers to by name. Returns INVALID_ARGUMENT,
+/// Reads the texture that the message `from` defines or refers to by name. `in` is the field that
+/// holds the message. Returns INVALID_ARGUMENT,
 /// with the name of the field, if a field is invalid or if a channel of the texture is above `most`
 /// anywhere.
 absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,

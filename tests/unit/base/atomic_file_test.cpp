@@ -84,9 +84,9 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-// A program makes this check before the work whose result the file will contain. A file is first
-// written under a longer, temporary name. So a name of 250 bytes is too long, although the file
-// system allows 255 bytes.
+// A program makes this check before long work whose result it will write to the file. A file is
+// first written under a longer, temporary name. So a name of 250 bytes is too long, although the
+// file system allows 255 bytes.
 TEST(AtomicFile, ChecksBeforehandWhetherAFileCanBeWritten) {
   const test::TempDir dir;
   EXPECT_TRUE(check_can_be_written(dir / "a").ok());

@@ -311,7 +311,7 @@ TEST(BrowserSession, RefusesWrongArguments) {
 TEST_F(BrowserSessionTest, ReportsBytesThatAreNoMessage) {
   const std::string nonsense(20, '\xff');
   EXPECT_THAT(error_of(bandsaw_session_receive(session_, nonsense.data(), nonsense.size())),
-              HasSubstr("no message"));
+              HasSubstr("not a message"));
   receive(welcome("e1"));
   const std::uint32_t task = start(10, 0);
   error_of(bandsaw_session_rendering(session_, task, 1, nonsense.data(), nonsense.size()));

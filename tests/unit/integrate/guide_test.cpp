@@ -105,8 +105,8 @@ TEST(Guide, TakesFourRaysOfAnEvenSurface) {
   EXPECT_NEAR(shape.value.b, 5, 1e-5);
 }
 
-// The first coordinates of 2^k successive samples lie one each in 2^k equal parts of [0, 1], so the share
-// of an edge's right side is wrong by less than one ray.
+// The first coordinates of 2^k successive samples lie one each in 2^k equal parts of [0, 1], so the
+// share of an edge's right side is wrong by less than one ray.
 TEST(Guide, TakesThirtyTwoRaysAcrossASharpEdge) {
   const Taken albedo = taken(two_walls(0, 1, 0.7), kGuideAlbedo);
   EXPECT_EQ(albedo.rays, 4u + 32u);

@@ -30,15 +30,15 @@ struct MeanComparison {
 /// otherwise.
 inline void expect_same_mean(const Scene& scene, const PhotonSources& sources, const Ray& ray,
                              const MeanComparison& size) {
-  const std::atomic<bool> go_on = false;
+  const std::atomic<bool> never_stop = false;
   Pool pool(2);
-  const auto guiding = train_guiding(scene, {64, 64, size.max_depth}, {pool, go_on});
+  const auto guiding = train_guiding(scene, {64, 64, size.max_depth}, {pool, never_stop});
   Moments with;
   Moments without;
   PathCounts counts;
   for (std::uint32_t number = 0; number < size.maps; ++number) {
     const auto traced = make_photon_maps(
-        scene, sources, {.seed = 3, .number = number, .photons = size.photons}, {pool, go_on});
+        scene, sources, {.seed = 3, .number = number, .photons = size.photons}, {pool, never_stop});
     PhotonMaps maps(sources.casters);
     maps.use_for_all(*traced);
     const PathOptions mapped{.max_depth = size.max_depth, .maps = &maps};

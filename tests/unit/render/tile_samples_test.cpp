@@ -89,8 +89,9 @@ TEST(TileSamples, DefaultToTheSamplesOfTheBand) {
   EXPECT_TRUE(TileSamples::from_numbers({}, 10, {2, 5})->whole());
 }
 
-// However a pass is split into bands, the bands together take each sample of the half tile exactly
-// once, and each band takes one node or none.
+// In an adaptive pass, a half tile takes a node of samples that differs from that of the pass. If
+// the pass is split into bands, the node is split in proportion. The bands together take each
+// sample of the half tile exactly once, and each band takes one node or none.
 TEST(TileSamples, PartsOfAPassAddUpToThePass) {
   test::Random random(7);
   const RowRange row{0, 1};

@@ -100,7 +100,7 @@ TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
   EXPECT_EQ(page.job().status().settings().width(), 48u);
   EXPECT_EQ(page.job().status().settings().height(), 32u);  // the scene, 600 x 400, scaled
   EXPECT_EQ(page.job().status().stop().samples(), 32u);
-  EXPECT_EQ(page.why_size(), 1);
+  EXPECT_EQ(page.why_size(), 1);  // one reason why the job is not done: there is no worker
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 1);
 }
 
@@ -202,7 +202,7 @@ TEST_F(RoutesTest, ADoneJobDoesNotShowAnOlderPicture) {
   EXPECT_EQ(done->status, 200);
   EXPECT_NE(done->body, early->body);
   EXPECT_EQ(done->body, get(path + "500")->body)
-      << "a picture that was not requested before must be the same";
+      << "both sides are larger than the image, so both pictures are the image itself";
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

@@ -39,10 +39,10 @@ class WebTest : public ::testing::Test {
   /// Submits a job of 24 x 16 pixels, which no worker renders; returns its id. log_in() MUST have
   /// been called.
   std::uint64_t submit_box();
-  /// Uploads a band of a job: some samples, at most a block of 8, of all rows. Each pixel's value is
-  /// `value`.
-  void put(std::uint64_t job, std::uint32_t width, std::uint32_t height,
-           const SampleRange& samples, double value);
+  /// Uploads a band of a job: some samples, at most a block of 8, of all rows. Each pixel's value
+  /// is `value`.
+  void put(std::uint64_t job, std::uint32_t width, std::uint32_t height, const SampleRange& samples,
+           double value);
   /// Uploads the samples [first, samples) of a job and waits until the job is done. `first` MUST be
   /// a multiple of 8. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
