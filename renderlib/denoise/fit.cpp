@@ -94,24 +94,62 @@ class TileFit {
   PatchDistances distances_[2];
 };
 
-/// Squares of the differences of a pixel's guides from those of the centre.
-struct GuideDistances {
-  Float8 albedo;
-  Float8 normal;
-  Float8 depth;  ///< relative to the centre's depth
+Float8 squared(const Float8& value) { return value * value; }
 
-  GuideDistances(const Float8* d, const Float8& per_depth)
-      : albedo((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]),
-        normal(d[3] * d[3] + d[4] * d[4]),
-        depth(d[kDepthGuide] * per_depth * (d[kDepthGuide] * per_depth)) {}
-
-  /// Returns the factor in [0, 1] by which these distances reduce the pixel's weight.
-  Float8 similarity(const FitSettings& settings) const {
-    const auto per_square = [](float reach) { return Float8(1.0f / (reach * reach)); };
-    return falling(
-        (albedo * per_square(settings.albedo_reach) + normal * per_square(settings.normal_reach)) +
-        depth * per_square(settings.depth_reach));
+/// Returns the range of a guide, largest minus least value, in the 3 x 3 pixels around each of
+/// eight centres, of which the first is (column, row).
+Float8 range_around(const SplitPlane& guide, int column, int row) {
+  const Float8 zero(0.0f);
+  Float8 most(0.0f);
+  Float8 most_negated(-1.0f);  // guides are in [0, 1]
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const Float8 value = Float8::load(guide.row(dx & 1, 2 * row + dy) + column + (dx >> 1));
+      most = max(most, value);
+      most_negated = max(most_negated, zero - value);
+    }
   }
+  return most + most_negated;
+}
+
+/// One over the squares of the reaches of eight centres. A reach is at least the range of the guide
+/// around the centre. Otherwise a centre at an edge, whose guides are a mixture of two surfaces,
+/// would resemble no other pixel and keep its noise. (Rousselle, Manzi and Zwicker 2013, "Robust
+/// Denoising using Feature and Color Information", section 4, use the gradient for the same
+/// purpose.)
+class GuideReaches {
+ public:
+  /// The first centre is (column, row), and `centre` has the guides of all eight.
+  GuideReaches(const FitInput& input, const FilterSettings& settings, int column, int row,
+               const Float8 (&centre)[kGuides]) {
+    const Float8 one(1.0f);
+    const auto range = [&](std::size_t guide) {
+      return squared(range_around(input.guides[guide], column, row));
+    };
+    const Float8 normal = range(kFirstNormal) + range(kFirstNormal + 1);
+    const Float8 depth = range(kDepthGuide);
+    for (std::size_t f = 0; f < kFilters; ++f) {
+      const FitSettings& of = settings[f];
+      per_albedo_[f] = Float8(1.0f / (of.albedo_reach * of.albedo_reach));
+      per_normal_[f] = one / max(Float8(of.normal_reach * of.normal_reach), normal);
+      const Float8 reach = Float8(of.depth_reach) * max(centre[kDepthGuide], Float8(1e-6f));
+      per_depth_[f] = one / max(squared(reach), depth);
+    }
+  }
+
+  /// Returns the factor in [0, 1] by which the differences `d` of a pixel's guides from those of
+  /// the centre reduce its weight in filter `f`.
+  Float8 similarity(std::size_t f, const Float8* d) const {
+    const Float8 albedo = (squared(d[0]) + squared(d[1])) + squared(d[2]);
+    const Float8 normal = squared(d[kFirstNormal]) + squared(d[kFirstNormal + 1]);
+    return falling((albedo * per_albedo_[f] + normal * per_normal_[f]) +
+                   squared(d[kDepthGuide]) * per_depth_[f]);
+  }
+
+ private:
+  Float8 per_albedo_[kFilters];
+  Float8 per_normal_[kFilters];
+  Float8 per_depth_[kFilters];
 };
 
 void TileFit::fit_centres(int column, int row, int i, int j) {
@@ -120,7 +158,7 @@ void TileFit::fit_centres(int column, int row, int i, int j) {
   for (std::size_t g = 0; g < kGuides; ++g) {
     centre[g] = Float8::load(input_.guides[g].row(0, y) + column);
   }
-  const Float8 per_depth = Float8(1.0f) / max(centre[kDepthGuide], Float8(1e-6f));
+  const GuideReaches reaches(input_, settings_, column, row, centre);
   Float8 per_reach[kFilters];
   for (std::size_t f = 0; f < kFilters; ++f) {
     per_reach[f] = Float8(1.0f / (settings_[f].color_reach * settings_[f].color_reach));
@@ -135,11 +173,10 @@ void TileFit::fit_centres(int column, int row, int i, int j) {
       for (std::size_t g = 0; g < kGuides; ++g) {
         terms[3 + g] = Float8::load(input_.guides[g].row(parity, y + dy) + at) - centre[g];
       }
-      const GuideDistances guides(terms + 3, per_depth);
       const Float8 valid = Float8::load(input_.valid.row(parity, y + dy) + at);
       Float8 similar[kFilters];
       for (std::size_t f = 0; f < kFilters; ++f) {
-        similar[f] = guides.similarity(settings_[f]) * valid;
+        similar[f] = reaches.similarity(f, terms + 3) * valid;
       }
       const bool is_near = std::max(std::abs(dx), std::abs(dy)) <= kNear;
       for (std::size_t h = 0; h < 2; ++h) {

@@ -48,7 +48,8 @@ struct FitInput {
 };
 
 /// Settings of one filter. A pixel has little weight if one of its differences from the centre is
-/// larger than the reach of this difference.
+/// larger than the reach of this difference. At edges, the reaches of normal and depth are larger:
+/// at least the range of the guide in the 3 x 3 pixels around the centre.
 struct FitSettings {
   float color_reach = 1;      ///< difference of patches, in standard deviations
   float albedo_reach = 2;     ///< difference of the albedo

@@ -14,6 +14,9 @@ namespace {
 constexpr float kAlbedoReach = 0.3f;
 constexpr float kNormalReach = 0.2f;
 constexpr float kDepthReach = 0.1f;
+/// Other surfaces count this much as well. So a pixel at an edge, whose guides resemble no other
+/// pixel's, is smoothed too.
+constexpr float kLeastSimilarity = 0.1f;
 
 using Guide = std::array<float, kGuides>;
 
@@ -25,8 +28,9 @@ Guide guide_at(const FitInput& input, int x, int y) {
   return guide;
 }
 
-/// Returns how similar the guides of two pixels are, in [0, 1]; 1 for equal guides. In the mean for
-/// a pixel with the guides `a`, the weight of a pixel with the guides `b` has this factor.
+/// Returns how similar the guides of two pixels are, in [kLeastSimilarity, 1]; 1 for equal guides.
+/// In the mean for a pixel with the guides `a`, the weight of a pixel with the guides `b` has this
+/// factor.
 float similarity(const Guide& a, const Guide& b) {
   float distance = 0;
   for (std::size_t g = 0; g < kGuides; ++g) {
@@ -37,7 +41,7 @@ float similarity(const Guide& a, const Guide& b) {
     distance += difference * difference;
   }
   const float t = std::max(0.0f, 1 - distance / 4);
-  return t * t * t * t;
+  return std::max(kLeastSimilarity, t * t * t * t);
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ void smooth(Map& map, const MapSize& size, int radius, Pool& pool);
 
 /// Smooths maps whose rows are the wanted rows of an image (FitInput::wanted). Each value becomes a
 /// weighted mean of the values up to two pixels away in x and y. The weights fall with the distance
-/// and with the difference of the guides (albedo, normal and depth), so that surfaces are not
-/// mixed. Other rows count as outside of the image.
+/// and with the difference of the guides (albedo, normal and depth), so that pixels of other
+/// surfaces count little. Other rows count as outside of the image.
 class SurfaceSmoothing {
  public:
   static constexpr int kRadius = 2;

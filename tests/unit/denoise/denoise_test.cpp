@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -168,6 +169,38 @@ TEST(Denoise, TextureOfTheGuidesIsKept) {
   const Denoised clean = denoised(input);
   const Image truth = image_of(checks);
   EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 4);
+}
+
+// The only noise is at the edge of a lamp against a dark background: how many samples of a pixel
+// hit the lamp. The guides know the share of the lamp, but no two pixels of the edge have the same
+// one.
+TEST(Denoise, TheNoiseOfAnEdgeIsRemovedWithTheGuides) {
+  const auto share = [](std::uint32_t x, std::uint32_t y) {
+    return std::clamp((static_cast<float>(x) - 30 - 0.37f * static_cast<float>(y)) / 1.5f, 0.0f,
+                      1.0f);
+  };
+  const Picture lamp = [&](auto x, auto y) { return gray(4 * share(x, y)); };
+  DenoiseInput input = noisy(lamp, 0, 9);
+  input.albedo = image_of([&](auto x, auto y) { return gray(share(x, y)); });
+  input.shape = image_of([&](auto x, auto y) { return Rgb{0.5f, 0.5f, 20 * share(x, y)}; });
+  test::Random random(9);
+  const auto half = [&](float hit) {
+    int hits = 0;
+    for (int sample = 0; sample < 8; ++sample) {
+      hits += random.uniform(0, 1) < double{hit} ? 1 : 0;
+    }
+    return gray(4 * static_cast<float>(hits) / 8);
+  };
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const std::size_t i = std::size_t{y} * kWidth + x;
+      input.first.pixels[i] = half(share(x, y));
+      input.mean.pixels[i] = (input.first.pixels[i] + half(share(x, y))) * 0.5f;
+    }
+  }
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(lamp);
+  EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 1.5);
 }
 
 TEST(Denoise, DetailThatNoGuideShowsIsKeptWhereItExceedsTheNoise) {
