@@ -1,6 +1,14 @@
 // Estimates the errors of an image as rendered ("raw") and without noise ("clean"). The samples of
-// each pixel are in two parts. Each pixel adds its estimates (squared_error.h) to the sums of its
-// row, and total_of() computes the errors of the whole image from the sums of all rows.
+// each pixel are in two parts. For each channel of a pixel, InParts (squared_error.h) holds the
+// means of both parts as rendered (`first`, `second`) and filtered (`a`, `b`). Each pixel adds its
+// estimates to the sums of its row, and total_of() computes the errors of the whole image from the
+// sums of all rows.
+//
+// The squared error of the clean image is estimated in two ways. The first estimate compares the
+// filtered value of one part with the rendered value of the other (`clean`). The second is the
+// noise that is left (`variance`) plus the squared bias (`bias`). The bias is found from pairs of
+// neighbours: their noise is independent, so on average the product of their errors is the product
+// of their biases.
 
 #include "renderlib/denoise/error_sums.h"
 
@@ -99,10 +107,9 @@ CleanError total_of(absl::Span<const RowSums> rows, double rendered_share) {
     all.add(row);
   }
   const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
-  // The mean over all pairs of neighbours, times the number of values.
+  // The mean product of the biases over all pairs of neighbours, times the number of values.
   const double bias = all.pairs > 0 ? all.bias * (count / static_cast<double>(all.pairs)) : 0;
-  // Two estimates of the error, of which the larger one is taken (README.md, "The estimated
-  // error").
+  // The larger one of the two estimates is taken (README.md, "The estimated error").
   all.clean = std::max(all.clean, all.variance + std::max(0.0, bias));
   // Noise is inversely proportional to the number of samples, and the image as rendered has only
   // `rendered_share` of them.

@@ -1,6 +1,8 @@
-// For a tile, computes the distance of the patch around each centre from the patch around each
-// pixel of its window (fit_parts.h). Differences of pixels are computed once for each offset (dx,
-// dy) within the window, and then summed up over patches. Even and odd columns are stored apart,
+// A centre is a pixel at which the regression fits a function to the pixels of a window around it
+// (fit.h). A patch is the square of pixels around a pixel. For each centre of a tile and each pixel
+// of the centre's window, this file computes how much the patches around the two differ in one half
+// of the samples (fit_parts.h). Differences of pixels are computed once for each offset (dx, dy)
+// within the window, and then summed up over patches. Even and odd columns are stored apart,
 // because centres are two pixels apart.
 
 #include "renderlib/denoise/fit_parts.h"
@@ -21,7 +23,9 @@ void PatchDistances::compute(int x, int y) {
 }
 
 /// Compares the pixels of the tile, and those up to a patch's radius around it, with the pixels at
-/// the offset (dx, dy) from them.
+/// the offset (dx, dy) from them. The distance of two pixels is their squared difference minus its
+/// expectation for equal pixels, which is the sum of their variances, divided by this sum
+/// (Rousselle et al. 2012, "Adaptive Rendering with Non-Local Means Filtering", section 4).
 void PatchDistances::compare(int x, int y, int dx, int dy) {
   const auto& color = input_.halves[half_];
   const SplitPlane& variance = input_.variance[half_];

@@ -23,14 +23,15 @@ struct NestedDielectrics {
 };
 
 /// Returns the first surface along the ray that exists for this sample; std::nullopt if nothing is
-/// hit. Among hits that exist, the order (t, instance, primitive) decides. Updates `nesting` for
-/// all hidden boundaries that are skipped. A ray that leaves a surface starts at a small offset
-/// from it. Two boundaries of nested glasses touch if a ray that leaves the first boundary starts
-/// beyond the second. Boundaries that touch count as a single boundary. The result is then the
-/// surface of that glass which is present on one side of the single boundary and absent on the
-/// other side. uv directions are set if the material needs them. `bounce` is the number of
-/// scatterings before the ray (0: a camera ray), which selects the random numbers. Adds the number
-/// of rays traced to `rays`.
+/// hit. Among hits that exist, the order (t, instance, primitive) decides. The uv directions of the
+/// surface are set if its material needs them. Updates `nesting` for all hidden boundaries that are
+/// skipped. `bounce` is the number of scatterings before the ray (0: a camera ray), which selects
+/// the random numbers. Adds the number of rays traced to `rays`.
+///
+/// Boundaries of nested glasses may be so close that a ray from the first one starts beyond the
+/// second, because rays start at a small offset from a surface. Such boundaries count as one
+/// boundary between the glasses before the first and the glasses after the last. The result is the
+/// surface of the glass in which these two sets differ.
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
                                               const PixelSampler& sampler, std::uint64_t sample,
                                               std::uint32_t bounce, NestedDielectrics& nesting,

@@ -24,9 +24,10 @@ constexpr double kSameDirection = 1e-20;
 
 /// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
 /// the side of the photon. These surfaces use the shading normal, except where it would send light
-/// to the wrong side of the surface. The normal that a path uses depends on the direction from
-/// which the path comes (for_mirror() and for_glass() in material/bsdf.cpp). The photon leaves in
-/// that direction. The direction is still to be sampled, so both normals have to be tried.
+/// to the wrong side of the surface. The photon must be scattered about the same normal as a path
+/// that travels in the opposite direction. That path's normal depends on the direction from which
+/// the path comes (for_mirror() and for_glass() in material/bsdf.cpp), and this is the direction in
+/// which the photon leaves. It is not known yet when the photon arrives, so both normals are tried.
 struct PhotonNormals {
   Vec3 geometric;
   Vec3 shading;

@@ -35,7 +35,7 @@ class PixelSums {
 
   /// Writes three sums (r, g, b) for each pixel of row y with x in [first, last) to which `tiles`
   /// gives samples. `sums` holds the sums of the whole band. Adds to `counters`. Checks `stop` at
-  /// least once per block; once it is set, the sums are unspecified.
+  /// least once per block of 8 samples; once it is set, the sums are unspecified.
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> sums, Counters& counters) const;
 
@@ -68,7 +68,7 @@ class PixelSums {
   /// single pixel. Writes the sums of the pixels that lie in the band.
   void add_group(absl::Span<const PixelPlace> places, const SampleRange& samples,
                  absl::Span<double> sums, Scratch& scratch, Counters& counters) const;
-  /// Returns the sums of one block, which may be truncated.
+  /// Returns the sums of one block (8 samples, or fewer at the end of a job).
   Sums leaf(absl::Span<const PixelPlace> places, const SampleRange& samples,
             absl::Span<ReusePixel> pixels, Counters& counters) const;
   /// Takes one sample of each pixel, and stores the radiance of each sample in `pixels`.

@@ -151,8 +151,8 @@ absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, Me
                                            "box or a sphere"));
 }
 
-void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
-                Placements& to) {
+void place_boundary(const Transform& placement, Instance& boundary, const SceneDraft& draft,
+                    Placements& to) {
   const MediumId inside = medium_in(boundary.material);
   const bool varies = draft.out.scene.media.media[index_of(inside)].grids.any();
   if (!varies && placement == Transform{}) {

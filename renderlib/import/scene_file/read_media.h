@@ -21,21 +21,22 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// These functions return the boundary of the medium `inside`: an instance of a mesh or a group in
-/// Media::boundaries (scene/media.h). The caller adds this instance to a Placements. The boundary
-/// is a sphere, a box from `low` to `high`, or `mesh`, which is an instance of a mesh of the scene.
+/// These functions return the boundary of the medium `inside`, which is an instance in
+/// Media::boundaries (scene/media.h). It is a sphere, a box from `low` to `high`, or `mesh`, which
+/// is an instance of a mesh of the scene. The caller adds it to the boundaries of the scene or of a
+/// group (Placements).
 /// The last function returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh is open.
 Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
                                      SceneDraft& draft);
 
-/// Places `boundary` at `placement` in the space of `to`. boundary_of() MUST have returned the
-/// boundary, and the boundary MUST have no frame (a coordinate system, geometry/frame.h). If the
-/// medium inside has grids, a frame with this placement is added to `to`, and the boundary is put
-/// into this frame. So the grids move with the placement (scene/media.h). If the medium has no
-/// grids, only the boundary's transform is changed.
-void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
-                Placements& to);
+/// Places a boundary that boundary_of() returned. `placement` maps the boundary to the coordinates
+/// of `to`, the scene or a group. If the medium inside has no grids, only the boundary's transform
+/// is changed. If it has grids, they must move with the boundary (scene/media.h). So a frame (a
+/// coordinate system, geometry/frame.h) with this placement is added to `to`, and the boundary is
+/// put into it. The boundary MUST have no frame yet.
+void place_boundary(const Transform& placement, Instance& boundary, const SceneDraft& draft,
+                    Placements& to);
 
 }  // namespace bandsaw

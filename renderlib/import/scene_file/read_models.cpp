@@ -108,7 +108,7 @@ absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& fr
           "whole model by keys, or use a medium without grids");
     }
     ASSIGN_OR_RETURN(Instance boundary, boundary_of(in, mesh, medium, draft));
-    give_space({}, boundary, draft, filled);
+    place_boundary({}, boundary, draft, filled);
     filled.instances.push_back(boundary);
   }
   return filled;

@@ -202,7 +202,7 @@ absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft
   if (!from.velocity().empty() && shutter.open != shutter.close) {
     boundary.frame = add_frame(sliding(velocity, shutter), to);
   } else {
-    give_space(translation(velocity * shutter.open), boundary, draft, to);
+    place_boundary(translation(velocity * shutter.open), boundary, draft, to);
   }
   to.instances.push_back(boundary);
   return absl::OkStatus();
