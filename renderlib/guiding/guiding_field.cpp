@@ -1,8 +1,8 @@
 // Builds a binary tree over the records (light that arrived at points of surfaces). The box around
 // a range of records is halved at its longest side, until each range has few enough records. In
 // each leaf the records are divided into up to six cells, by the axis direction that is closest to
-// their normal. Then fit_cell() finds balls for each cell, from which the light of its records
-// comes.
+// their normal. Then the light of each cell's records comes from a few regions, and fit_cell()
+// encloses each of them in a ball.
 
 #include "renderlib/guiding/guiding_field.h"
 

@@ -58,7 +58,7 @@ class PixelSums {
   /// Scratch memory of add_group(), allocated once per unit of work.
   struct Scratch {
     std::vector<ReusePixel> pixels;
-    std::vector<Sums> stack;
+    std::vector<Sums> stack;  ///< sums of nodes of the tree of samples (pixel_sums.cpp)
   };
 
   bool in_band(const PixelPlace& place) const {

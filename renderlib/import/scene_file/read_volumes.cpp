@@ -49,7 +49,8 @@ absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& fro
   }
   if (!is_volume_file(from.file())) {
     return in.error("file",
-                    absl::StrCat("\"", from.file(), "\" is no volume that is read: .vdb or .vol"));
+                    absl::StrCat("\"", from.file(),
+                                 "\" is not a volume: files of volumes end in .vdb or .vol"));
   }
   const absl::StatusOr<NamedFile> file = find_named_file(from.file(), draft);
   if (!file.ok()) {
@@ -61,8 +62,8 @@ absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& fro
     return in.error("file", absl::StrCat(from.file(), ": ", read.status().message()));
   }
   if (read->negative > 0) {
-    draft.out.info.warnings.push_back(
-        absl::StrCat(from.file(), ": ", read->negative, " numbers below 0 of its grid became 0"));
+    draft.out.info.warnings.push_back(absl::StrCat(
+        from.file(), ": ", read->negative, " numbers of its grid were below 0 and became 0"));
   }
   return read;
 }

@@ -74,9 +74,10 @@ TEST(Report, IsJsonWithAllFields) {
   EXPECT_EQ(json.fields().at("curve").list_value().values_size(), 2);
   // The error is at most 10 % at 32 samples, and at most 5 % (4 % and a margin of 1 %) at 64
   // samples. So at 32 f samples (1 < f <= 2) the bound is 10 % / f. Beyond 64 samples, this part of
-  // the curve is repeated for each doubling of the samples. Each repetition is lower by the factor
-  // 2^(-3/4), because the report accepts no steeper fall. So the bound at 512 f samples is
-  // 10 % / f / 2^3, which is 1 % at 640 samples.
+  // the curve is repeated for each doubling of the samples, and each repetition is lower than the
+  // one before by the factor 2^(-3/4), the steepest fall over repetitions that the report assumes.
+  // Four repetitions lower it by 2^3. So the bound at 512 f samples is 10 % / f / 2^3, which is
+  // 1 % at 640 samples.
   EXPECT_NEAR(at(json, "time", "cpu_s_to_1_percent").number_value(), 4.0 * 640 / 64, 1e-9);
   EXPECT_EQ(at(json, "machines", "mrays_per_cpu_s").number_value(), 2);
   const auto& workers = at(json, "machines", "workers").list_value().values();

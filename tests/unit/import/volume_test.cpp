@@ -390,7 +390,8 @@ TEST(SceneVolumes, ErrorsNameTheField) {
   EXPECT_THAT(of_grid("file: \"../a.vol\""), HasSubstr("medium[0].density_grid.file: "));
   EXPECT_THAT(of_grid("file: \"cut.vol\""),
               HasSubstr("density_grid.file: cut.vol: claims 3 x 2 x 1 cells"));
-  EXPECT_THAT(of_grid("file: \"s.textproto\""), HasSubstr("is no volume that is read"));
+  EXPECT_THAT(of_grid("file: \"s.textproto\""),
+              HasSubstr("is not a volume: files of volumes end in"));
   EXPECT_THAT(of_grid("file: \"a.vol\" grid: \"x\""), HasSubstr("has one grid, without a name"));
   EXPECT_THAT(of_grid("file: \"b.vdb\" unit_box: true"), HasSubstr("unit_box: is for *.vol files"));
   EXPECT_THAT(of_grid("file: \"b.vdb\" clamp: true"), HasSubstr("clamp: is for *.vol files"));
@@ -414,7 +415,7 @@ TEST(SceneVolumes, ErrorsNameTheField) {
       "}");
   ASSERT_TRUE(warned.ok()) << warned.status();
   EXPECT_THAT(warned->info.warnings,
-              ::testing::Contains("negative.vol: 1 numbers below 0 of its grid became 0"));
+              ::testing::Contains("negative.vol: 1 numbers of its grid were below 0 and became 0"));
 }
 
 }  // namespace
