@@ -57,6 +57,10 @@ void SceneMaker::sphere(const Vec3& center, double radius, MaterialId material) 
 void SceneMaker::quad(const Vec3& corner, const Vec3& u, const Vec3& v, MaterialId material) {
   scene.geometry.quads.push_back({corner, u, v, material});
 }
+void SceneMaker::wall(MaterialId material, double z) {
+  quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
+}
+
 void SceneMaker::triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material) {
   scene.geometry.triangles.push_back({a, b, c, material});
 }

@@ -25,6 +25,8 @@ class SceneMaker {
 
   void sphere(const Vec3& center, double radius, MaterialId material);
   void quad(const Vec3& corner, const Vec3& u, const Vec3& v, MaterialId material);
+  /// Adds a square 100 units wide around the z axis, in the plane of this z. Its front faces +z.
+  void wall(MaterialId material, double z = 0);
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material);
   /// Adds the mesh and one instance of it.
   void instance(Mesh mesh, const Transform& to_world, MaterialId material);

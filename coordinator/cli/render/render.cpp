@@ -184,8 +184,8 @@ class LocalRun {
   }
 
   /// Returns a function that renders the guides (images by which the denoiser finds edges). The
-  /// guides are kept in guides_. They are used again at a later checkpoint if that checkpoint needs
-  /// guides with the same number of samples.
+  /// guides are kept in guides_. They are used again at a later checkpoint, unless the number of
+  /// further samples has changed (clean_jobs.h).
   JobRenderer guides_of(const Scene& scene) {
     return [this, render = one_by_one(layer_renderer(scene))](
                const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {

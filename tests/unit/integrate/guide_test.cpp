@@ -21,28 +21,23 @@ Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// Adds a wall in the plane of this z. Its front faces +z.
-void wall(SceneMaker& maker, MaterialId material, double z = 0) {
-  maker.quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
-}
-
 TEST(Guide, IsThatOfTheFirstSurfaceThatIsNoMirror) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   EXPECT_EQ(value(maker, kGuideAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
   // The blue channel of kGuideShape is the length of the path to the surface.
   EXPECT_EQ(value(maker, kGuideShape, kAhead).b, 7);
   // A mirror that faces the camera shows the wall behind it.
   SceneMaker mirror;
-  wall(mirror, mirror.metal(0.5f, 0), 0);
-  wall(mirror, mirror.diffuse({0.2f, 0.4f, 0.6f}), 8);
+  mirror.wall(mirror.metal(0.5f, 0), 0);
+  mirror.wall(mirror.diffuse({0.2f, 0.4f, 0.6f}), 8);
   EXPECT_EQ(value(mirror, kGuideAlbedo, kAhead), (Rgb{0.1f, 0.2f, 0.3f}));
   EXPECT_NEAR(value(mirror, kGuideShape, kAhead).b, 5 + 8, 1e-4);
 }
 
 TEST(Guide, FollowsTheBrighterOfReflectionAndRefractionInGlass) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
   // Straight ahead, nearly all light is refracted: the guides show the wall behind the sphere.
   // At the edge of the sphere, nearly all light is reflected, past the sphere to the wall.
@@ -57,8 +52,8 @@ TEST(Guide, FollowsTheBrighterOfReflectionAndRefractionInGlass) {
 
 TEST(Guide, ShowsWhatIsBehindAPane) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
-  wall(maker, maker.material(ThinDielectric{.transmission = gray(0.5f)}), 1);
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.wall(maker.material(ThinDielectric{.transmission = gray(0.5f)}), 1);
   for (std::uint64_t sample = 0; sample < 100; ++sample) {
     EXPECT_EQ(value(maker, kGuideShape, kAhead, sample).b, 7) << sample;
     // The pane's own albedo is near white.
@@ -96,7 +91,7 @@ SceneMaker two_walls(float left, float right, double edge, double depth_of_right
 
 TEST(Guide, TakesFourRaysOfAnEvenSurface) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}));
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}));
   const Taken albedo = taken(maker, kGuideAlbedo);
   EXPECT_EQ(albedo.rays, 4u);
   EXPECT_NEAR(albedo.value.g, 0.4, 1e-6);

@@ -41,14 +41,9 @@ double expect_mean(const SceneMaker& maker, Integrator integrator, const Ray& ra
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// Adds a wall in the plane of this z. Its front faces +z.
-void wall(SceneMaker& maker, MaterialId material, double z = 0) {
-  maker.quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
-}
-
 TEST(SampleValue, NormalsDepthAndAlbedoAreThoseOfTheFirstSurface) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   EXPECT_EQ(value(maker, Integrator::kNormals, kAhead), (Rgb{0.5f, 0.5f, 1}));
   EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(7));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
@@ -74,17 +69,17 @@ TEST(SampleValue, AlbedoOfAGltfMaterialIsItsBaseColour) {
   material.metallic = {gold, 1};
   material.roughness = {gold, 0.5};
   material.coat.texture = material.coat_roughness.texture = material.transmission.texture = gold;
-  wall(maker, maker.material(material));
+  maker.wall(maker.material(material));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
 }
 
 TEST(SampleValue, UsesNormalMapsAndSkipsHoles) {
   SceneMaker maker;
-  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  maker.wall(maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   Material bent = MetallicRoughness{};
   bent.relief.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
   const MaterialId id = maker.material(bent);
-  wall(maker, id);
+  maker.wall(id);
   // The normal of the map is n = (1, 0, 1) / sqrt(2), and the image shows (n + 1) / 2.
   const Rgb normal = value(maker, Integrator::kNormals, kAhead);
   EXPECT_NEAR(normal.r, 0.5 + std::sqrt(0.125), 1e-6);
@@ -135,7 +130,7 @@ TEST(SampleValue, AMissIsBlackAndUnoccluded) {
 
 TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   SceneMaker maker;
-  wall(maker, maker.diffuse(0.5f));
+  maker.wall(maker.diffuse(0.5f));
   maker.sphere({0, 0, 4}, 2, maker.diffuse(0.5f));
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
   // The view factor of a ball of radius r at distance d along the normal is (r / d)^2.
@@ -155,19 +150,19 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
 
 TEST(SampleValue, AmbientOcclusionSkipsHolesAndHiddenLamps) {
   SceneMaker maker;
-  wall(maker, maker.diffuse(0.5f));
+  maker.wall(maker.diffuse(0.5f));
   Material hole = MetallicRoughness{};
   hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
-  wall(maker, maker.material(hole), 2);
+  maker.wall(maker.material(hole), 2);
   const MaterialId lamp = maker.lamp(1);
   std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
-  wall(maker, lamp, 3);
+  maker.wall(lamp, 3);
   EXPECT_EQ(expect_mean(maker, Integrator::kAmbientOcclusion, kAhead, 1), 1);
 }
 
 TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   SceneMaker maker;
-  wall(maker, maker.diffuse(0.5f));
+  maker.wall(maker.diffuse(0.5f));
   maker.sphere({0, 0, 4}, 2, maker.lamp(3));
   maker.scene.local_shading.ambient = gray(0.25f);
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
@@ -178,8 +173,8 @@ TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
 
 TEST(SampleValue, DirectHasNoInterreflection) {
   SceneMaker maker;
-  wall(maker, maker.diffuse(0.5f));
-  wall(maker, maker.diffuse(0.9f), 20);
+  maker.wall(maker.diffuse(0.5f));
+  maker.wall(maker.diffuse(0.9f), 20);
   maker.background(gray(7), gray(7));
   maker.scene.local_shading.ambient = {0.1f, 0.2f, 0.4f};
   for (std::uint64_t sample = 0; sample < 20; ++sample) {
@@ -189,8 +184,8 @@ TEST(SampleValue, DirectHasNoInterreflection) {
 
 TEST(SampleValue, DirectContinuesAtMirrorsAndGlass) {
   SceneMaker maker;
-  wall(maker, maker.metal(0.5f, 0));
-  wall(maker, maker.diffuse(0.5f), 20);
+  maker.wall(maker.metal(0.5f, 0));
+  maker.wall(maker.diffuse(0.5f), 20);
   maker.scene.local_shading.ambient = gray(1);
   EXPECT_EQ(value(maker, Integrator::kDirect, kAhead), gray(0.25f));
   SceneMaker glass;
