@@ -77,6 +77,22 @@ Box box_of(absl::Span<const StoredPhoton> photons) {
   return box;
 }
 
+/// Returns a box around the disks of the photons. It is a little larger, because of rounding.
+Box box_of_disks(absl::Span<const StoredPhoton> photons) {
+  constexpr float kMost = std::numeric_limits<float>::infinity();
+  Box box;
+  for (const StoredPhoton& photon : photons) {
+    Float3 low = photon.position;
+    Float3 high = photon.position;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::nextafter(low[axis] - photon.radius * 1.001f, -kMost);
+      high[axis] = std::nextafter(high[axis] + photon.radius * 1.001f, kMost);
+    }
+    box.add(low, high);
+  }
+  return box;
+}
+
 /// Returns the area of the surface in the box: the product of the two longer sides of the box. The
 /// surface is taken to be flat.
 double area_of(const Box& box) {
@@ -265,48 +281,75 @@ PhotonMap::PhotonMap(std::vector<StoredPhoton> photons, const Vec3& origin, doub
       photons_[i].power = photons_[i].power * static_cast<float>(1 / share_on_surface(photons_[i]));
     }
   });
-  split(0, static_cast<std::uint32_t>(photons_.size()), 0);
-  set_boxes();
+  Box all;
+  add_node(0, static_cast<std::uint32_t>(photons_.size()), 0, all.low, all.high);
+  for (std::vector<float>& row : disks_) {
+    row.reserve(photons_.size() + kWidth);
+  }
+  for (const StoredPhoton& photon : photons_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      disks_[axis].push_back(photon.position[axis]);
+    }
+    disks_[3].push_back(photon.radius * photon.radius);
+  }
+  for (std::vector<float>& row : disks_) {
+    row.resize(photons_.size() + kWidth);
+  }
 }
 
-void PhotonMap::split(std::uint32_t first, std::uint32_t last, int depth) {
+void PhotonMap::add_node(std::uint32_t first, std::uint32_t last, int depth, Float3& low,
+                         Float3& high) {
+  static_assert(kPhotonsOfLeaf <= kWidth);
+  /// Photons that get a box.
+  struct Range {
+    std::uint32_t first;
+    std::uint32_t last;
+    int depth;
+    std::uint32_t photons() const { return last - first; }
+  };
+  const auto by_photons = [](const Range& a, const Range& b) { return a.photons() < b.photons(); };
+  std::vector<Range> ranges{{first, last, depth}};
+  while (ranges.size() < kWidth) {
+    const auto largest = std::max_element(ranges.begin(), ranges.end(), by_photons);
+    if (largest->photons() <= kPhotonsOfLeaf) {
+      break;
+    }
+    const Range range = *largest;
+    const Box box = box_of({photons_.data() + range.first, range.photons()});
+    const auto half = divide(photons_, range.first, range.last, range.depth, box);
+    // Photons that space cannot divide keep their order.
+    const std::uint32_t middle = half.value_or(range.first + range.photons() / 2);
+    const int below = half ? range.depth + 1 : kMaxTreeDepth;
+    *largest = {range.first, middle, below};
+    ranges.insert(largest + 1, {middle, range.last, below});
+  }
   const std::size_t number = nodes_.size();
-  nodes_.emplace_back();
-  const Box box = box_of({photons_.data() + first, last - first});
-  if (const auto half = divide(photons_, first, last, depth, box)) {
-    split(first, *half, depth + 1);
-    split(*half, last, depth + 1);
-  } else {
-    nodes_[number].first = first;
-    nodes_[number].last = last;
+  Node& unused = nodes_.emplace_back();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    unused.bounds[axis].fill(std::numeric_limits<float>::infinity());
+    unused.bounds[axis + 3].fill(-std::numeric_limits<float>::infinity());
   }
-  nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
-}
-
-/// Children follow their parents, so in reverse order the boxes of children are computed first.
-void PhotonMap::set_boxes() {
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    Node& node = nodes_[i];
+  Box all;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const Range& range = ranges[i];
+    const bool is_leaf = range.photons() <= kPhotonsOfLeaf;
+    const auto next = static_cast<std::uint32_t>(nodes_.size());
     Box box;
-    for (std::uint32_t at = node.first; at < node.last; ++at) {
-      const StoredPhoton& photon = photons_[at];
-      Float3 low = photon.position;
-      Float3 high = photon.position;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        // The box is a little larger than the disk, because of rounding.
-        low[axis] = std::nextafter(low[axis] - photon.radius * 1.001f,
-                                   -std::numeric_limits<float>::infinity());
-        high[axis] = std::nextafter(high[axis] + photon.radius * 1.001f,
-                                    std::numeric_limits<float>::infinity());
-      }
-      box.add(low, high);
+    if (is_leaf) {
+      box = box_of_disks({photons_.data() + range.first, range.photons()});
+    } else {
+      add_node(range.first, range.last, range.depth, box.low, box.high);
     }
-    for (std::size_t child = i + 1; child < node.next; child = nodes_[child].next) {
-      box.add(nodes_[child].low, nodes_[child].high);
+    Node& node = nodes_[number];
+    node.children[i] = is_leaf ? Child{range.first, range.photons()} : Child{next, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      node.bounds[axis][i] = box.low[axis];
+      node.bounds[axis + 3][i] = box.high[axis];
     }
-    node.low = box.low;
-    node.high = box.high;
+    all.add(box.low, box.high);
   }
+  low = all.low;
+  high = all.high;
 }
 
 }  // namespace bandsaw

@@ -6,12 +6,16 @@
 // Meisel and Purcell 1977, "Variable Kernel Estimates of Multivariate Densities"). So the sum of
 // the power is kept whatever the radii are, and bright lines stay narrow.
 
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
 #include "renderlib/base/pool.h"
+#include "renderlib/base/simd.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/float3.h"
 #include "renderlib/math/rgb.h"
@@ -58,26 +62,43 @@ class PhotonMap {
   const Vec3& origin() const { return origin_; }
   /// Returns the memory of the map in bytes.
   std::size_t bytes() const {
-    return photons_.size() * sizeof(StoredPhoton) + nodes_.size() * sizeof(Node);
+    return photons_.size() * sizeof(StoredPhoton) + nodes_.size() * sizeof(Node) +
+           disks_.size() * disks_[0].size() * sizeof(float);
   }
 
  private:
-  /// A node of a binary tree in depth-first order: its first child follows it.
-  struct Node {
-    Float3 low;  ///< box of the disks
-    Float3 high;
-    std::uint32_t next = 0;   ///< the node after all descendants
-    std::uint32_t first = 0;  ///< photons [first, last) of a leaf; empty for other nodes
-    std::uint32_t last = 0;
+  static constexpr std::size_t kWidth = 8;  ///< boxes of a node, and photons of a leaf, at most
+  /// Maximum number of nodes on the way from the root to a leaf.
+  static constexpr std::size_t kMaxLevels = 80;
+
+  /// What a box of a node contains: photons [first, first + photons), or node `first` if `photons`
+  /// is 0.
+  struct Child {
+    std::uint32_t first = 0;
+    std::uint32_t photons = 0;
   };
-  /// Makes the nodes of photons [first, last), which it sorts.
-  void split(std::uint32_t first, std::uint32_t last, int depth);
-  /// Computes the boxes of all nodes.
-  void set_boxes();
+  /// A node of a tree with boxes around the disks.
+  struct alignas(64) Node {
+    /// low x, y, z, high x, y, z of each box; an unused box contains no point.
+    std::array<std::array<float, kWidth>, 6> bounds;
+    std::array<Child, kWidth> children;
+  };
+  /// Adds a node for the photons [first, last), and the nodes below it, and sorts these photons.
+  /// `depth` is the number of divisions of space so far. Sets the box around the disks.
+  void add_node(std::uint32_t first, std::uint32_t last, int depth, Float3& low, Float3& high);
+
+  /// Returns the mask of the boxes that contain the point.
+  static unsigned boxes_at(const Node& node, const Float3& point);
+  /// Returns the mask of the photons of a leaf whose spheres contain the point. The sphere of a
+  /// photon has the center and the radius of its disk.
+  unsigned spheres_at(const Child& leaf, const Float3& point) const;
 
   Vec3 origin_;
   std::vector<StoredPhoton> photons_;
-  std::vector<Node> nodes_;
+  /// Position x, y, z and squared radius of all photons, once more, so that eight photons are
+  /// tested at once. At the end there are kWidth more, so that eight can be loaded from any photon.
+  std::array<std::vector<float>, 4> disks_;
+  std::vector<Node> nodes_;  ///< the first is the root
 };
 
 /// Returns the density of a photon's power at a point, in 1 / area: Epanechnikov's kernel over the
@@ -103,25 +124,55 @@ inline float density_at(const StoredPhoton& photon, const Float3& position, cons
   return kPeak / radius2 * (1 - distance2 / radius2) * cosine;
 }
 
+inline unsigned PhotonMap::boxes_at(const Node& node, const Float3& point) {
+  const auto inside = [&](std::size_t axis) {
+    const Float8 at(point[axis]);
+    return (Float8::load(node.bounds[axis].data()) <= at) &
+           (at <= Float8::load(node.bounds[axis + 3].data()));
+  };
+  return (inside(0) & inside(1) & inside(2)).bits();
+}
+
+inline unsigned PhotonMap::spheres_at(const Child& leaf, const Float3& point) const {
+  const Float8 x = Float8(point[0]) - Float8::load(&disks_[0][leaf.first]);
+  const Float8 y = Float8(point[1]) - Float8::load(&disks_[1][leaf.first]);
+  const Float8 z = Float8(point[2]) - Float8::load(&disks_[2][leaf.first]);
+  const unsigned near = (x * x + y * y + z * z < Float8::load(&disks_[3][leaf.first])).bits();
+  return near & ((1u << leaf.photons) - 1);
+}
+
 template <class Visit>
 void PhotonMap::visit(const Vec3& position, const Vec3& normal, const Visit& visit) const {
+  if (nodes_.empty()) {
+    return;
+  }
   const Float3 p = float3(position - origin_);
   const Float3 up = float3(normal);
-  const auto count = static_cast<std::uint32_t>(nodes_.size());
-  for (std::uint32_t i = 0; i < count;) {
-    const Node& node = nodes_[i];
-    const bool inside = p[0] >= node.low[0] && p[0] <= node.high[0] && p[1] >= node.low[1] &&
-                        p[1] <= node.high[1] && p[2] >= node.low[2] && p[2] <= node.high[2];
-    if (!inside) {
-      i = node.next;
+  /// A node, and the mask of its boxes that contain the point and are not visited yet.
+  struct Level {
+    std::uint32_t node;
+    unsigned left;
+  };
+  std::array<Level, kMaxLevels> levels;
+  levels[0] = {0, boxes_at(nodes_[0], p)};
+  for (std::size_t used = 1; used > 0;) {
+    Level& level = levels[used - 1];
+    if (level.left == 0) {
+      --used;
       continue;
     }
-    for (std::uint32_t at = node.first; at < node.last; ++at) {
-      if (const float density = density_at(photons_[at], p, up); density > 0) {
-        visit(photons_[at], density);
+    const Child& child = nodes_[level.node].children[std::countr_zero(level.left)];
+    level.left &= level.left - 1;
+    if (child.photons == 0) {
+      levels[used++] = {child.first, boxes_at(nodes_[child.first], p)};
+      continue;
+    }
+    for (unsigned near = spheres_at(child, p); near != 0; near &= near - 1) {
+      const StoredPhoton& photon = photons_[child.first + std::countr_zero(near)];
+      if (const float density = density_at(photon, p, up); density > 0) {
+        visit(photon, density);
       }
     }
-    ++i;
   }
 }
 
