@@ -1,6 +1,7 @@
-// Traces the path of each pixel of a group. If the second vertex of a path is diffuse, the light
-// that leaves this vertex is shared: the vertex is connected with the first vertices of all pixels
-// of the group, with balance-heuristic weights (path_reuse.h has the formulas).
+// Traces the path of each pixel of a group. The primary vertex of a path is its first vertex whose
+// BSDF has a pdf; before it, there may be mirrors and smooth glass. If the vertex after the primary
+// vertex is diffuse, the light that leaves it is shared: it is connected with the primary vertices
+// of all pixels of the group, with balance-heuristic weights (path_reuse.h has the formulas).
 
 #include "renderlib/integrate/path_reuse.h"
 
@@ -15,16 +16,19 @@
 namespace bandsaw {
 namespace {
 
-/// The first vertex of a pixel's path, if its BSDF has a pdf, so that light from the second
-/// vertices of other pixels can be scattered there.
+/// The first vertex of a pixel's path whose BSDF has a pdf, so that light from the shared vertices
+/// of other pixels can be scattered there.
 struct PrimaryVertex {
   SurfacePoint point;
   Vec3 normal;  ///< geometric normal on the viewer's side
   Bsdf bsdf;
   const GuidingCones* cones;  ///< directions from which path guiding expects light
+  Rgb throughput;             ///< from this vertex to the camera
+  /// Number of scatterings that may follow the one at this vertex.
+  std::uint32_t scatterings_left;
 };
 
-/// The second vertex of a pixel's path, if all pixels may use it.
+/// The vertex after the primary vertex of a pixel's path, if all pixels may use it.
 struct SharedVertex {
   SurfacePoint point;
   Vec3 normal;   ///< geometric normal on the side from which the path arrived
@@ -38,49 +42,71 @@ bool is_only_diffuse(const Material& material) {
          is_black(material.emission.radiance.factor);
 }
 
+/// Traces the path from the camera to the first surface whose BSDF has a pdf. Returns the number of
+/// the scattering that may happen there, and sets `point` and `bsdf`; returns std::nullopt if the
+/// path ends before.
+std::optional<std::uint32_t> trace_to_primary(const PathContext& context, PathState& path,
+                                              SurfacePoint& point, Bsdf& bsdf) {
+  for (std::uint32_t depth = 0;; ++depth) {
+    const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
+    if (!hit) {
+      add_background(context, path);
+      return std::nullopt;
+    }
+    add_emission(context, *hit, depth, path);
+    const std::optional<Bsdf> found = make_bsdf(context, *hit, depth, path);
+    if (!found) {
+      return std::nullopt;
+    }
+    if (has_pdf(*found)) {
+      point = *hit;
+      bsdf = *found;
+      return depth;
+    }
+    if (!scatter(context, *hit, *found, {}, depth, path)) {
+      return std::nullopt;
+    }
+  }
+}
+
 /// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
-/// `primary` if the pixel can receive light from shared vertices. Sets `shared` if the second
-/// vertex of the path is shared. Then the light that leaves this vertex is in `shared` and not in
+/// `primary` if the pixel can receive light from shared vertices. Sets `shared` if the vertex after
+/// the primary vertex is shared. Then the light that leaves this vertex is in `shared` and not in
 /// `path`. `cones` is empty memory of the caller, in which the cones of `primary` are stored.
 void trace_own_path(const PathContext& context, PathState& path, GuidingCones& cones,
                     std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
-  const Ray camera_ray = path.ray;
-  const std::optional<SurfacePoint> first = next_surface(context, 0, path);
-  if (!first) {
-    add_background(context, path);
+  SurfacePoint first;
+  Bsdf bsdf;
+  const std::optional<std::uint32_t> depth = trace_to_primary(context, path, first, bsdf);
+  if (!depth) {
     return;
   }
-  add_emission(context, *first, 0, path);
-  const std::optional<Bsdf> bsdf = make_bsdf(context, *first, 0, path);
-  if (!bsdf) {
-    return;
-  }
+  const Vec3 wo = -path.ray.direction;
   if (context.options.guiding != nullptr) {
-    cones = cones_at(context, *first, *bsdf, -camera_ray.direction);
+    cones = cones_at(context, first, bsdf, wo);
   }
-  if (has_pdf(*bsdf)) {
-    primary = PrimaryVertex{*first, facing_normal(*first, -camera_ray.direction), *bsdf, &cones};
-  }
-  if (!scatter(context, *first, *bsdf, cones, 0, path)) {
+  primary = PrimaryVertex{first,  facing_normal(first, wo), bsdf,
+                          &cones, path.throughput,          context.scatterings_left(path, *depth)};
+  if (!scatter(context, first, bsdf, cones, *depth, path)) {
     return;
   }
-  const std::optional<SurfacePoint> second = next_surface(context, 1, path);
+  const std::optional<SurfacePoint> second = next_surface(context, *depth + 1, path);
   if (!second) {
     add_background(context, path);
     return;
   }
   const Rgb own = path.radiance;
-  // If the path passes through the first surface, its light stays with its own pixel.
-  const bool is_shared = primary && !path.previous.delta &&
-                         dot(path.ray.direction, primary->normal) > 0 &&
+  // If the path passes through the primary surface, its light stays with its own pixel.
+  const bool is_shared = !path.previous.delta && dot(path.ray.direction, primary->normal) > 0 &&
                          is_only_diffuse(context.scene.material(second->material));
   if (is_shared) {
     shared = SharedVertex{*second, facing_normal(*second, -path.ray.direction), {}};
     path.radiance = {};
     path.throughput = gray(1);
+    path.compression = 1;
   }
-  if (scatter_at(context, *second, 1, path)) {
-    trace_path(context, 2, path);
+  if (scatter_at(context, *second, *depth + 1, path)) {
+    trace_path(context, *depth + 2, path);
   }
   if (is_shared) {
     shared->radiance = path.radiance;
@@ -114,13 +140,14 @@ Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
 }
 
 /// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,
-/// with balance-heuristic weights.
+/// with balance-heuristic weights. With `max_depth`, the light of the vertex depends on the number
+/// of scatterings before it, so only pixels in whose paths this number is equal receive the light.
 void distribute(const Scene& scene, const PrimaryVertices& primary, const SharedVertex& shared,
                 std::size_t owner, absl::Span<ReusePixel> pixels) {
   std::array<Connection, kMaxReusePixels> connections;
   double pdf_sum = 0;  // over all pixels, by area
   for (std::size_t j = 0; j < pixels.size(); ++j) {
-    if (!primary[j]) {
+    if (!primary[j] || primary[j]->scatterings_left != primary[owner]->scatterings_left) {
       continue;
     }
     const Connection connection = connect(*primary[j], shared);
@@ -134,8 +161,11 @@ void distribute(const Scene& scene, const PrimaryVertices& primary, const Shared
     pdf_sum += connection.scattered.pdf * connection.solid_angle_per_area;
   }
   for (std::size_t j = 0; pdf_sum > 0 && j < pixels.size(); ++j) {
-    pixels[j].radiance += connections[j].scattered.value * shared.radiance *
-                          static_cast<float>(connections[j].solid_angle_per_area / pdf_sum);
+    if (connections[j].solid_angle_per_area > 0) {
+      pixels[j].radiance += primary[j]->throughput * connections[j].scattered.value *
+                            shared.radiance *
+                            static_cast<float>(connections[j].solid_angle_per_area / pdf_sum);
+    }
   }
 }
 
