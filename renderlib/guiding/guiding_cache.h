@@ -58,6 +58,9 @@ struct PhotonMapKey {
 /// were made.
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
+  /// Number of equal parts of the shutter interval. A path is lit only by photons of the part in
+  /// which it travels. 1 if nothing moves, >= 1.
+  std::uint32_t parts = 1;
   /// Light that receivers (surfaces whose sampled lobes are all wide) scattered
   /// (integrate/indirect_photons.h).
   PhotonMap indirect;

@@ -27,7 +27,8 @@ struct StoredPhoton {
   Float3 position{};        ///< relative to PhotonMap::origin
   float radius = 0;         ///< of its disk, scene units; set by PhotonMap
   Float3 normal{};          ///< geometric normal of the surface, unit, on the side of arrival
-  std::uint32_t chain = 0;  ///< number of scatterings between the light and this surface
+  std::uint16_t chain = 0;  ///< number of scatterings between the light and this surface
+  std::uint16_t part = 0;   ///< the part of the shutter interval in which the photon travelled
   Float3 from{};            ///< unit, towards the place from which the photon came
   Rgb power{};              ///< flux: radiance x steradian x area in scene units
 };

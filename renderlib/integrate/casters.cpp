@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "renderlib/geometry/placement.h"
 #include "renderlib/geometry/primitive_list.h"
 
 namespace bandsaw {
@@ -46,6 +47,11 @@ Casters::Casters(const Scene& scene) : scene_(scene) {
   const Geometry& geometry = scene.geometry();
   for (const Material& material : scene.materials()) {
     casting_.push_back(is_caster(material));
+  }
+  if (scene.moves()) {
+    for (const Instance& instance : geometry.instances) {
+      moving_.push_back(bandsaw::moves(geometry, instance));
+    }
   }
   const PrimitiveList list(geometry, casting_);
   const std::uint64_t step = (list.size() + kMaxPrimitives - 1) / kMaxPrimitives;

@@ -24,6 +24,11 @@ class Casters {
   bool empty() const { return materials_.empty(); }
   /// Returns true if every point of every caster can be sampled.
   bool complete() const { return complete_; }
+  /// Returns true if the primitive moves while the shutter is open. Such surfaces may be casters,
+  /// but they are no receivers.
+  bool moves(PrimitiveId id) const {
+    return !moving_.empty() && id.instance > 0 && moving_[id.instance - 1];
+  }
   /// Returns true if surfaces of this material are casters; false for mixtures.
   bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
@@ -40,6 +45,7 @@ class Casters {
 
   const Scene& scene_;
   std::vector<bool> casting_;  ///< for each material, true if its surfaces are casters
+  std::vector<bool> moving_;   ///< for each instance, true if it moves; empty if none does
   bool complete_ = true;
   std::vector<SurfaceSampler> materials_;  ///< the primitives of each material that casts
 };

@@ -35,6 +35,8 @@ constexpr double kRareLight = 1.5;
 /// which guiding by the cells of photons pays as well.
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
+/// The part of an image's light that may be missing before photon maps are used to find it.
+constexpr double kMaxMissing = 1.0 / 1024;
 
 /// Photon maps of indirect light are tried if the variance is above kHard, and used if they reduce
 /// variance times rays by more than the factor kMinGainOfGathering.
@@ -54,6 +56,7 @@ struct PixelStatistics {
   double direct_squares = 0;
   double by_paths = 0;    ///< of the variances that the cells of paths would remove
   double by_photons = 0;  ///< of the variances that photons would remove
+  double caustics = 0;    ///< of the luminances of caustics that the cells predict
   double expected = 0;    ///< of the luminances that the cells predict
   std::uint64_t rays = 0;
   std::uint64_t direct_rays = 0;
@@ -78,6 +81,7 @@ void add_cells(const GuidingCells& cells, double reflected, PixelStatistics& to)
   if (cells.photons != nullptr && cells.photons->count > 0) {
     const double radiance = reflected * cells.photons->irradiance;
     expected = std::max(expected, radiance);  // the light of the paths may include it
+    to.caustics += radiance;
     to.by_photons += radiance * radiance * (kMomentOfLamp * cells.photons->moment - 1);
   }
   to.expected += expected;
@@ -152,6 +156,8 @@ bool GuidingGain::paths_pay() const {
 
 bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMaps; }
 
+bool GuidingGain::misses_light() const { return missing > kMaxMissing; }
+
 bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
 
 bool GuidingGain::gathering_may_pay() const {
@@ -191,6 +197,7 @@ std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& k
       gain.direct_variance += variance_of(pixel.direct_sum, pixel.direct_squares) * part;
       gain.by_paths += pixel.by_paths / kAll * part;
       gain.by_photons += pixel.by_photons / kAll * part;
+      gain.missing += scene.lights().any_delta() ? pixel.caustics / (kAll * unit * kPixels) : 0;
     }
   }
   return gain;

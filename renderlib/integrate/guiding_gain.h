@@ -32,6 +32,10 @@ struct GuidingGain {
   /// missed. So each of the two may exceed the measured `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
+  /// Light of caustics that the field predicts, relative to the pixel's mean, if the scene has
+  /// delta lights; otherwise 0. Path tracing misses the part of this light that comes from delta
+  /// lights over mirrors and smooth glass.
+  double missing = 0;
 
   /// Returns the share of `part` in the sum of `part` and the measured variance, in [0, 1]. The sum
   /// is the divisor because the few measured samples may have missed the light of `part`.
@@ -40,6 +44,8 @@ struct GuidingGain {
   bool paths_pay() const;    ///< guiding by the cells of paths
   bool maps_pay() const;     ///< photon maps
   bool photons_pay() const;  ///< guiding by the cells of photons
+  /// Returns true if much light may be missing without photon maps (`missing`).
+  bool misses_light() const;
   /// Returns true if photon maps of indirect light are worth a trial. This needs much noise. And
   /// gathering_pays() must be true for maps that would remove all noise and all rays of indirect
   /// light, because real maps remove less.

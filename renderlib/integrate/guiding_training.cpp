@@ -146,9 +146,12 @@ class Decisions {
     return gain_ || !key_.only_if_it_pays;
   }
 
-  /// Decides whether caustics come from maps. If so, measures the gain for the rest of the light.
+  /// Decides whether caustics come from maps: where the maps pay, and where light of delta lights
+  /// would be missing without them. If so, measures the gain for the rest of the light.
   bool decide_on_caustics() {
-    if ((gain_ && !gain_->maps_pay()) || !can_have_caustic_maps(scene_, casters_)) {
+    const bool needed = gain_ ? gain_->misses_light() : scene_.lights().any_delta();
+    const bool useful = !gain_ || gain_->maps_pay() || needed;
+    if (!useful || !can_have_caustic_maps(scene_, casters_)) {
       return true;
     }
     std::optional<Mapping> mapping =
@@ -157,7 +160,8 @@ class Decisions {
     if (!mapping) {
       return false;
     }
-    if (!caustics_pay(*mapping->maps)) {
+    const TracedMaps& maps = *mapping->maps;
+    if (maps.caustics.size() == 0 || !(needed || caustics_pay(maps))) {
       return true;
     }
     use(*std::move(mapping));

@@ -88,7 +88,7 @@ void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler
     }
     const Vec3 from = -ray.direction;
     const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, from);
-    if (caustic_role(sources.casters, hit->material, bsdf) == CausticRole::kReceiver) {
+    if (caustic_role(sources.casters, *hit, hit->material, bsdf) == CausticRole::kReceiver) {
       if (share > 0) {
         out.photons.push_back(stored_photon(scene, sources.casters, *hit, from, chain - uncounted,
                                             power * share, origin));
@@ -134,7 +134,8 @@ PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, con
                     .direction = -place->direction,
                     .time = point.time});
     const std::optional<Bsdf> bsdf = make_bsdf(context, point, 0, path);
-    if (!bsdf || caustic_role(sources.casters, point.material, *bsdf) != CausticRole::kReceiver) {
+    if (!bsdf ||
+        caustic_role(sources.casters, point, point.material, *bsdf) != CausticRole::kReceiver) {
       continue;
     }
     if (scatter(context, point, *bsdf, {}, 0, path)) {

@@ -26,10 +26,6 @@ namespace {
 /// the same bits with any number of threads.
 constexpr std::uint32_t kChunks = 64;
 
-/// Largest mean solid angle of the lamps as seen from the casters, in steradians, for which photon
-/// maps pay. Paths hit larger lamps often enough, so that their caustics have little noise anyway.
-constexpr double kLargestLamp = 0.5;
-
 /// Number of points that are tried for one indirect photon.
 constexpr std::uint64_t kOriginsPerPhoton = 4;
 
@@ -68,13 +64,22 @@ Vec3 origin_of(const Scene& scene) {
 
 /// Returns chunk `i` of a map.
 PhotonChunk chunk_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t photons,
-                     std::uint64_t i) {
+                     std::uint64_t i, std::uint32_t parts = 1) {
   return {.seed = key.seed,
           .map = key.number,
           .photons = photons,
           .first = photons * i / kChunks,
           .last = photons * (i + 1) / kChunks,
-          .origin = origin};
+          .origin = origin,
+          .parts = parts};
+}
+
+/// Returns the number of parts into which the shutter interval is divided for map `number`. Light
+/// is blurred over a part. The parts become shorter as the disks become smaller: the length of a
+/// part falls as the area of the disks does (map_of()).
+std::uint32_t parts_of_shutter(const Scene& scene, std::uint32_t number) {
+  constexpr double kFirst = 8;
+  return scene.moves() ? static_cast<std::uint32_t>(kFirst * pow(number + 1.0, 1.0 / 3)) : 1;
 }
 
 /// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
@@ -117,9 +122,11 @@ std::vector<StoredPhoton> joined(std::vector<TracedPhotons> chunks, TracedMaps& 
 /// Adds the map of caustics. Returns false if stopped.
 bool add_caustics(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
                   const Vec3& origin, const Preparation& preparation, TracedMaps& maps) {
+  maps.parts = parts_of_shutter(scene, key.number);
   std::vector<TracedPhotons> chunks(kChunks);
   if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        chunks[i] = trace_photons(scene, sources.casters, chunk_of(key, origin, key.photons, i));
+        chunks[i] = trace_photons(scene, sources.casters,
+                                  chunk_of(key, origin, key.photons, i, maps.parts));
       })) {
     return false;
   }
@@ -185,10 +192,12 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   return !preparation.stopped();
 }
 
-bool has_emissive_surface(const Scene& scene) {
-  return std::any_of(scene.materials().begin(), scene.materials().end(), [](const Material& m) {
-    return std::holds_alternative<Emissive>(m.kind) || !is_black(m.emission.radiance.factor);
-  });
+/// Returns true if photons may carry light of the scene.
+bool has_lamp(const Scene& scene) {
+  return scene.lights().any_delta() || scene.background().environment ||
+         std::any_of(scene.materials().begin(), scene.materials().end(), [](const Material& m) {
+           return std::holds_alternative<Emissive>(m.kind) || !is_black(m.emission.radiance.factor);
+         });
 }
 
 /// Returns true if photons do not travel through surfaces of this material as paths do:
@@ -228,7 +237,7 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
     return misleads_photons(material) ||
            (mix != nullptr && (casters.casts(mix->a) || casters.casts(mix->b)));
   };
-  return !casters.empty() && casters.complete() && has_emissive_surface(scene) && !scene.moves() &&
+  return !casters.empty() && casters.complete() && has_lamp(scene) &&
          std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
 }
 
@@ -236,9 +245,7 @@ bool has_enough_origins(const TracedMaps& maps) {
   return maps.effective_origins >= kMinEffectiveOrigins;
 }
 
-bool caustics_pay(const TracedMaps& maps) {
-  return maps.caustics.size() > 0 && maps.lamp_angle <= kLargestLamp;
-}
+bool caustics_pay(const TracedMaps& maps) { return maps.lamp_angle <= kLargestLamp; }
 
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters) {

@@ -31,13 +31,13 @@ std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const Pho
                                                    const Preparation& preparation);
 
 /// Returns true if caustics can come from maps. The scene must have casters, all of which can be
-/// sampled, and emissive surfaces. It must have no motion, no glass with priorities, no mixtures
-/// with casters and no hidden lamps, because with any of these, photons would not travel exactly as
-/// paths do.
+/// sampled, and an emissive surface, a delta light or an environment. It must have no glass with
+/// priorities, no mixtures with casters and no hidden lamps,
+/// because with any of these, photons would not travel exactly as paths do.
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 
-/// Returns true if photon maps of caustics are better than paths: photons arrive, and the lamps are
-/// small as seen from the casters, so that paths hardly find them.
+/// Returns true if photon maps of caustics are better than paths: the lamps are small as seen from
+/// the casters, so that paths hardly find them. The map of caustics MUST NOT be empty.
 bool caustics_pay(const TracedMaps& maps);
 
 /// Returns true if the photons of indirect light start at enough different points. In a scene of
@@ -49,8 +49,9 @@ bool has_enough_origins(const TracedMaps& maps);
 /// Returns the surfaces at which indirect photons start (PhotonSources::surfaces). Returns
 /// std::nullopt if indirect light cannot come from maps. This is so if the scene has no such
 /// surface, or if such surfaces have more than 2^21 primitives or an area that is not finite. It is
-/// also so if the scene has motion, media, mixtures, glass with priorities or hidden lamps, because
-/// with any of these, photons would not travel exactly as paths do.
+/// also so if the scene has motion except that of the camera, media, mixtures, glass with
+/// priorities or hidden lamps, because with any of these, photons would not travel exactly as paths
+/// do.
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters);
 

@@ -16,6 +16,7 @@
 #include "renderlib/integrate/mis.h"
 #include "renderlib/integrate/path_state.h"
 #include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/photon_start.h"
 #include "renderlib/integrate/russian_roulette.h"
 #include "renderlib/integrate/through_lens.h"
 #include "renderlib/integrate/through_media.h"
@@ -80,32 +81,47 @@ struct CompetingStrategies {
   /// surface have MIS weight 1, so light sampling covers only lights that such directions cannot
   /// reach.
   bool beyond_surface = false;
-  /// True if photons find the light of emissive surfaces, so that these surfaces are not sampled
-  /// here.
-  bool without_surfaces = false;
+  /// The share that is sampled here of the light that photons carry (photons_carry()); nullopt:
+  /// all.
+  std::optional<Rgb> beside_photons = std::nullopt;
   /// The portals through which the background is sampled as well; null: none.
   const Portals* portals = nullptr;
 };
 
-/// Returns true if photons find the light that emissive surfaces send to a caster. `casters`: the
-/// number of casters that the path met before this one, since the last receiver of caustics
+/// Returns true if photons find the light that they carry to a caster. `casters`: the number of
+/// casters that the path met before this one, since the last receiver of caustics
 /// (PathState::chain).
 bool is_left_to_photons(const PathContext& context, std::uint32_t casters) {
   return context.options.maps != nullptr && casters != kNoChain && casters < kMaxCausticChain;
 }
 
-/// Returns true if photons find the emission at `light`, which the path hit from a caster. Photons
-/// start where light sampling at that caster, on the side that the path left, can sample the light.
-bool is_found_by_photons(const PathContext& context, const PathState& path,
-                         const SurfacePoint& light) {
+/// Returns the caster that the path left, on the side of the path's ray, if photons find the light
+/// that they carry to it. Photons start where light sampling at this receiver can sample a light.
+std::optional<Receiver> start_of_photons(const PathContext& context, const PathState& path) {
   if (path.chain == 0 || !is_left_to_photons(context, path.chain - 1)) {
-    return false;
+    return std::nullopt;
   }
   Receiver caster = path.previous.receiver;
   if (dot(path.ray.direction, *caster.normal) < 0) {
     caster.normal = -*caster.normal;
   }
-  return context.scene.lights().pdf(caster, light) > 0;
+  return caster;
+}
+
+/// Returns true if photons find the emission at `light`, which the path hit.
+bool is_found_by_photons(const PathContext& context, const PathState& path,
+                         const SurfacePoint& light) {
+  const std::optional<Receiver> caster = start_of_photons(context, path);
+  return caster && context.scene.lights().pdf(*caster, light) > 0;
+}
+
+/// Returns true if photons find the background in the direction of the path.
+bool is_background_found_by_photons(const PathContext& context, const PathState& path) {
+  const Lights& lights = context.scene.lights();
+  const Vec3& direction = path.ray.direction;
+  const std::optional<Receiver> caster = start_of_photons(context, path);
+  return caster && photons_carry(lights, direction) &&
+         lights.environment_pdf(*caster, direction) > 0;
 }
 
 /// Returns true if BSDF sampling alone accounts for the light on the far side of the surface.
@@ -131,9 +147,15 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
       scene.lights().sample(receiver, choice, numbers[1], numbers[2]);
-  if (!light || is_left_to_bsdf_sampling(*light, competing) ||
-      (competing.without_surfaces && !light->delta && !light->distant)) {
+  if (!light || is_left_to_bsdf_sampling(*light, competing)) {
     return {};
+  }
+  Rgb share = gray(1);
+  if (competing.beside_photons && photons_carry(scene.lights(), *light)) {
+    share = *competing.beside_photons;
+    if (is_black(share)) {
+      return {};
+    }
   }
   const BsdfValue scattered = evaluate(bsdf, cones, light->direction);
   if (is_black(scattered.value)) {
@@ -150,14 +172,16 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
     other_pdf = combined_pdf(other_pdf, competing.portals->pdf(point.position, light->direction));
   }
   return scattered.value * light->radiance *
-         static_cast<float>(power_heuristic(light->pdf, other_pdf) / light->pdf) * passing;
+         static_cast<float>(power_heuristic(light->pdf, other_pdf) / light->pdf) * passing * share;
 }
 
 /// Samples the background through a portal. Returns the estimate of the light that arrives through
 /// the portals on the receiver's side and is scattered at the point, with its MIS weight. `point`,
-/// `receiver`, `bsdf` and `cones` are those of sample_light().
+/// `receiver`, `bsdf` and `cones` are those of sample_light(). `beside_photons` is that of
+/// CompetingStrategies.
 Rgb sample_portals(const PathContext& context, const SurfacePoint& point, const Receiver& receiver,
-                   const Bsdf& bsdf, const GuidingCones& cones, std::uint32_t depth) {
+                   const Bsdf& bsdf, const GuidingCones& cones,
+                   const std::optional<Rgb>& beside_photons, std::uint32_t depth) {
   const Scene& scene = context.scene;
   const Sample4 numbers = context.numbers(group_portal(depth));
   const std::optional<Portals::Sample> portal =
@@ -166,7 +190,10 @@ Rgb sample_portals(const PathContext& context, const SurfacePoint& point, const 
     return {};
   }
   const BsdfValue scattered = evaluate(bsdf, cones, portal->direction);
-  const Rgb background = radiance(scene.background(), scene.textures(), portal->direction);
+  Rgb background = radiance(scene.background(), scene.textures(), portal->direction);
+  if (beside_photons && photons_carry(scene.lights(), portal->direction)) {
+    background *= *beside_photons;
+  }
   if (is_black(scattered.value) || is_black(background)) {
     return {};
   }
@@ -245,9 +272,11 @@ std::uint32_t branches_for(const Scene& scene) {
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path) {
   const Scene& scene = context.scene;
-  const Rgb light =
-      emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
-  if (is_black(light) || is_found_by_photons(context, path, point)) {
+  Rgb light = emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
+  if (!is_black(light) && is_found_by_photons(context, path, point)) {
+    light *= path.share_of_paths;
+  }
+  if (is_black(light)) {
     return;
   }
   Rgb passing = gray(1);
@@ -263,9 +292,13 @@ void add_emission(const PathContext& context, const SurfacePoint& point, std::ui
 }
 
 void add_background(const PathContext& context, PathState& path) {
-  path.radiance +=
-      path.throughput * weighted_background(context.scene, context.options.portals, path.previous,
-                                            path.ray.direction, context.options.technique);
+  const Rgb share = is_background_found_by_photons(context, path) ? path.share_of_paths : gray(1);
+  if (is_black(share)) {
+    return;
+  }
+  path.radiance += path.throughput * share *
+                   weighted_background(context.scene, context.options.portals, path.previous,
+                                       path.ray.direction, context.options.technique);
 }
 
 std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
@@ -289,12 +322,12 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   return bsdf_at(material, scene.textures(), point, wo, outside_index);
 }
 
-/// Returns the light of caustics that a receiver scatters along the path. If the path has met
-/// another receiver before, only every second sample of a pixel looks up the map, and the light of
-/// the map counts twice. The reason is that caustics are a small part of the light beyond the first
-/// receiver, and a look-up takes longer than the rest of the scattering.
-Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfacePoint& point,
-                const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
+/// Returns the light of the caustics in `maps` that a receiver scatters along the path. If the path
+/// has met another receiver before, only every second sample of a pixel looks up the map, and the
+/// light of the map counts twice. The reason is that caustics are a small part of the light beyond
+/// the first receiver, and a look-up takes longer than the rest of the scattering.
+Rgb caustics_at(const PathContext& context, const TracedMaps& maps, const SurfacePoint& point,
+                CausticRole role, const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
   constexpr std::uint64_t kSamplesPerLookUp = 2;
   std::uint64_t counts = 1;
   if (path.after_receiver) {
@@ -305,26 +338,30 @@ Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfaceP
     }
     counts = kSamplesPerLookUp;
   }
-  return photon_radiance(map, point, bsdf, -path.ray.direction,
-                         context.scatterings_left(path, depth)) *
-         static_cast<float>(counts);
+  PhotonFilter filter{.longest = context.scatterings_left(path, depth)};
+  if (maps.parts > 1) {
+    filter.part = part_of_shutter(context.scene, maps.parts, point.time);
+  }
+  return photon_radiance(maps.caustics, point, role, bsdf, -path.ray.direction, filter) *
+         static_cast<float>(counts * maps.parts);
 }
 
 /// Adds the light of photon maps that a receiver scatters along the path. Returns true if the added
-/// light includes all indirect light, so that the path ends at the next receiver.
-bool add_photons(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-                 std::uint32_t depth, PathState& path) {
+/// light includes all indirect light, so that the path ends at the next receiver without narrow
+/// lobes (kReceiver).
+bool add_photons(const PathContext& context, const SurfacePoint& point, CausticRole role,
+                 const Bsdf& bsdf, std::uint32_t depth, PathState& path) {
   const TracedMaps& maps = context.options.maps->of_sample(context.sample);
   if (maps.caustics.size() > 0) {
-    path.radiance +=
-        path.throughput * caustics_at(context, maps.caustics, point, bsdf, depth, path);
+    path.radiance += path.throughput * caustics_at(context, maps, point, role, bsdf, depth, path);
   }
-  if (!path.after_receiver || maps.indirect.size() == 0 || path.reach < maps.gather_distance) {
+  if (role != CausticRole::kReceiver || !path.after_receiver || maps.indirect.size() == 0 ||
+      path.reach < maps.gather_distance) {
     return false;
   }
   path.radiance +=
-      path.throughput * photon_radiance(maps.indirect, point, bsdf, -path.ray.direction,
-                                        context.scatterings_left(path, depth));
+      path.throughput * photon_radiance(maps.indirect, point, role, bsdf, -path.ray.direction,
+                                        {.longest = context.scatterings_left(path, depth)});
   return true;
 }
 
@@ -342,18 +379,22 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
   const CausticRole role = options.maps == nullptr
                                ? CausticRole::kOther
-                               : caustic_role(options.maps->casters(), point.material, bsdf);
+                               : caustic_role(options.maps->casters(), point, point.material, bsdf);
   bool gathers = false;
   if (options.maps != nullptr) {
     if (role == CausticRole::kReceiver && path.ends_at_receiver) {
       return false;
     }
     path.reach += length(point.position - path.ray.origin);
-    gathers = role == CausticRole::kReceiver && add_photons(context, point, bsdf, depth, path);
+    gathers = receives_caustics(role) && add_photons(context, point, role, bsdf, depth, path);
   }
 
   const Portals* const portals =
       has_pdf(bsdf) && options.technique != Technique::kScatteringOnly ? options.portals : nullptr;
+  std::optional<Rgb> beside_photons;
+  if (role == CausticRole::kCaster && is_left_to_photons(context, path.chain)) {
+    beside_photons = path.share_of_paths;
+  }
   // Sample a light on the side from which the path came. If the surface passes light, a light on
   // the far side is sampled too, provided that both sides are treated alike or that only light
   // sampling reaches some lights.
@@ -363,8 +404,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
         is_last ? CompetingStrategies{Technique::kLightsOnly, /*reaches_distant_only=*/true}
                 : CompetingStrategies{options.technique, /*reaches_distant_only=*/false};
     competing.portals = portals;
-    competing.without_surfaces =
-        role == CausticRole::kCaster && is_left_to_photons(context, path.chain);
+    competing.beside_photons = beside_photons;
     path.radiance +=
         path.throughput * sample_light(scene, point, receiver, bsdf, cones, numbers, competing,
                                        context.stream(group_shadow(depth, ShadowUse::kLight)),
@@ -379,7 +419,8 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     }
   }
   if (portals != nullptr) {
-    path.radiance += path.throughput * sample_portals(context, point, receiver, bsdf, cones, depth);
+    path.radiance += path.throughput *
+                     sample_portals(context, point, receiver, bsdf, cones, beside_photons, depth);
   }
   if (is_last) {
     const Rgb albedo = albedo_at(material, scene.textures(), point);
@@ -400,7 +441,11 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
                    next->delta || (passes && !both_sides)};
   path.previous.portals = portals != nullptr && !passes;
   path.throughput *= next->weight;
-  path.chain = role == CausticRole::kReceiver && !next->delta           ? 0
+  const bool receives = receives_caustics(role) && !next->delta;
+  if (receives) {
+    path.share_of_paths = share_of_paths(role, bsdf, next->wi);
+  }
+  path.chain = receives                                                 ? 0
                : role == CausticRole::kCaster && path.chain != kNoChain ? path.chain + 1
                                                                         : kNoChain;
   if (role == CausticRole::kReceiver && !next->delta) {

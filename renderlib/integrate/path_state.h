@@ -37,6 +37,9 @@ struct PathState {
   /// since the last receiver (a surface that scatters light over wide angles). It is kNoChain if
   /// the path had another scattering since then, or if it has met no receiver yet.
   std::uint32_t chain = kNoChain;
+  /// The share of the light at the end of this chain that photons do not estimate
+  /// (share_of_paths()). Unspecified if `chain` is kNoChain.
+  Rgb share_of_paths = {};
   bool after_receiver = false;  ///< a receiver of caustics has scattered the path
   /// True if the light of the next receiver was already taken from a photon map of indirect light,
   /// so that the path ends there.

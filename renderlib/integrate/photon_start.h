@@ -18,6 +18,23 @@ namespace bandsaw {
 /// left to path tracing.
 inline constexpr std::uint32_t kMaxCausticChain = 16;
 
+/// Largest solid angle of a lamp as seen from a caster, in steradians, for which photon maps pay.
+/// Paths hit larger lamps often enough, so that their caustics have little noise anyway.
+inline constexpr double kLargestLamp = 0.5;
+
+/// Returns true if photons carry the light of the environment from this direction. This is so if
+/// the environment is so bright there that light sampling has a pdf as for a lamp of kLargestLamp.
+/// The sun in an image of the sky is such a place.
+inline bool photons_carry(const Lights& lights, const Vec3& direction) {
+  return lights.direction_pdf_of_environment(direction) >= 1 / kLargestLamp;
+}
+
+/// Returns true if the photons of photon maps carry the light of this sample. They carry the light
+/// of emissive surfaces and delta lights, and of the bright places of an environment.
+inline bool photons_carry(const Lights& lights, const LightSample& light) {
+  return light.delta || !light.distant || photons_carry(lights, light.direction);
+}
+
 /// A random point of a caster, and a light that is sampled from there.
 struct PhotonStart {
   SurfacePoint point;

@@ -72,6 +72,11 @@ std::optional<SurfaceSample> SurfaceSampler::sample(const Scene& scene, double p
       .time = time};
   const Hit hit{.t = 1, .id = found->id, .u = place.on_shape.x, .v = place.on_shape.y};
   SurfaceSample sample{surface_at(scene.geometry(), ray, hit, scene.features().uv), 1 / total};
+  if (scene.moves()) {
+    // The primitive was chosen by its area in the middle of the shutter interval.
+    const double before = found == primitives_.begin() ? 0 : std::prev(found)->area_up_to;
+    sample.pdf *= (found->area_up_to - before) / area(shape);
+  }
   if (shape.kind == ShapeView::Kind::kEllipsoid) {
     sample.pdf *= area(shape) * ellipsoid_area_pdf(shape, place.position);
   }

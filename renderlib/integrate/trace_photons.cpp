@@ -30,7 +30,7 @@ namespace {
 struct Photon {
   Ray ray;
   Rgb power;
-  double angle = 0;  ///< solid angle of the lamp as seen from the first caster
+  double angle = 0;  ///< solid angle of the lamp as seen from the first caster; 0 for a delta light
 };
 
 /// The random numbers of a photon.
@@ -69,18 +69,22 @@ double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
            amount * receiving_part(scene, casters, mix->b, point, from);
   }
   const Bsdf bsdf = bsdf_at(material, scene.textures(), point, from);
-  return caustic_role(casters, id, bsdf) == CausticRole::kReceiver
+  return receives_caustics(caustic_role(casters, point, id, bsdf))
              ? opacity(material, scene.textures(), point)
              : 0;
 }
 
-/// Returns the photon that leaves a random point of a caster; std::nullopt if no emissive surface
-/// lights the point or the photon is absorbed. `photons`: number of photons that share the power.
+/// Returns the photon that leaves a random point of a caster; std::nullopt if no light that
+/// photons carry arrives at the point, or the photon is absorbed. `photons`: number of photons that
+/// share the power.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
                             std::uint64_t photons, std::uint64_t& rays) {
-  std::optional<PhotonStart> at = start_photon(scene, casters, numbers.sampler, numbers.photon,
-                                               middle_of(shutter_of(scene.camera())));
-  if (!at || at->light.delta || at->light.distant) {
+  const Shutter& shutter = shutter_of(scene.camera());
+  const double moment = numbers.group(kGroupTime)[0];
+  std::optional<PhotonStart> at =
+      start_photon(scene, casters, numbers.sampler, numbers.photon,
+                   shutter.open + moment * (shutter.close - shutter.open));
+  if (!at || !photons_carry(scene.lights(), at->light)) {
     return std::nullopt;
   }
   const LightSample& light = at->light;
@@ -90,14 +94,15 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   if (!(cosine > 0)) {
     return std::nullopt;
   }
-  const Rgb passing =
-      transmittance(scene, spawn_ray_to(point, light.target, 0), numbers.stream(0), rays);
+  const Ray shadow_ray =
+      light.distant ? spawn_ray(point, light.direction) : spawn_ray_to(point, light.target, 0);
+  const Rgb passing = transmittance(scene, shadow_ray, numbers.stream(0), rays);
   // The factor 2 is needed because one of the two sides of the caster was chosen.
   const double weight = 2 * cosine / (light.pdf * at->pdf * static_cast<double>(photons)) *
                         opacity(scene.material(point.material), scene.textures(), point);
   Photon photon{.ray = {},
                 .power = light.radiance * passing * static_cast<float>(weight),
-                .angle = 1 / light.pdf};
+                .angle = light.delta ? 0 : 1 / light.pdf};
   if (!(max_component(photon.power) > 0) ||
       !scatter(scene, point, light.direction, numbers.group(group_bsdf(0)), photon)) {
     return std::nullopt;
@@ -105,10 +110,9 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   return photon;
 }
 
-/// Follows the photon until it arrives at a receiver of caustics, and adds it to `out` with its
-/// position relative to `origin`.
+/// Follows the photon until it arrives at a receiver of caustics, and adds it to `out`.
 void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, Photon photon,
-            const Vec3& origin, TracedPhotons& out) {
+            const PhotonChunk& chunk, TracedPhotons& out) {
   NestedDielectrics nesting;
   for (std::uint32_t chain = 1; chain <= kMaxCausticChain; ++chain) {
     const std::optional<SurfacePoint> hit = intersect_visible(
@@ -126,10 +130,12 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
     }
     const Vec3 from = -photon.ray.direction;
     const CausticRole role =
-        caustic_role(casters, hit->material,
+        caustic_role(casters, *hit, hit->material,
                      bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
-    if (role == CausticRole::kReceiver) {
-      out.photons.push_back(stored_photon(scene, casters, *hit, from, chain, photon.power, origin));
+    if (receives_caustics(role)) {
+      out.photons.push_back(
+          stored_photon(scene, casters, *hit, from, chain, photon.power, chunk.origin));
+      out.photons.back().part = part_of_shutter(scene, chunk.parts, hit->time);
       const double power = luminance(out.photons.back().power);
       out.power += power;
       out.power_by_angle += power * photon.angle;
@@ -176,7 +182,7 @@ StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const Sur
   }
   return {.position = float3(hit.position - origin),
           .normal = float3(facing_normal(hit, from)),
-          .chain = chain,
+          .chain = static_cast<std::uint16_t>(chain),
           .from = float3(from),
           .power = power};
 }
@@ -187,7 +193,7 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
   for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
     const Numbers numbers{sampler, number};
     if (const auto photon = start(scene, casters, numbers, chunk.photons, out.rays)) {
-      follow(scene, casters, numbers, *photon, chunk.origin, out);
+      follow(scene, casters, numbers, *photon, chunk, out);
     }
   }
   return out;

@@ -1,8 +1,9 @@
 #pragma once
 
-// Photons of caustics. They carry light of emissive surfaces to a surface that receives caustics
-// (caustics.h). On the way, one or more casters (surfaces of metal or glass, casters.h) scatter the
-// light, and nothing else does.
+// Photons of caustics. They carry light of emissive surfaces, of delta lights and of the bright
+// places of an environment (photons_carry()) to a surface that receives caustics (caustics.h). On
+// the way, one or more casters (surfaces of metal or glass, casters.h) scatter the light, and
+// nothing else does.
 
 #include <cstdint>
 #include <vector>
@@ -21,7 +22,8 @@ struct PhotonChunk {
   std::uint64_t photons = 0;  ///< number of photons that are started for the whole map
   std::uint64_t first = 0;
   std::uint64_t last = 0;
-  Vec3 origin = {};  ///< the point to which the positions of stored photons are relative
+  Vec3 origin = {};         ///< the point to which the positions of stored photons are relative
+  std::uint32_t parts = 1;  ///< parts of the shutter interval (TracedMaps::parts)
 };
 
 /// The photons of a chunk.

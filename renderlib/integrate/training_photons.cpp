@@ -84,7 +84,7 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
     }
     const Vec3 wo = -photon.ray.direction;
     const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, wo);
-    if (mapped && receives_caustics(bsdf)) {
+    if (mapped && receives_caustics(role_of_receiver(bsdf))) {
       return;
     }
     if (can_be_guided(bsdf)) {

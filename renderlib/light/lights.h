@@ -81,6 +81,11 @@ class Lights {
 
   /// Returns the pdf with which `sample()` samples the unit direction towards the environment.
   double environment_pdf(const Receiver& receiver, const Vec3& direction) const;
+  /// Returns the pdf of the unit direction, by solid angle, among the directions that are sampled
+  /// towards the environment. It does not include the selection of the environment; 0 without one.
+  double direction_pdf_of_environment(const Vec3& direction) const {
+    return environment_.empty() ? 0 : environment_.pdf(direction);
+  }
 
   /// Returns the probability with which `sample()` selects the primitive at this receiver.
   double probability(const Receiver& receiver, PrimitiveId id) const;

@@ -76,6 +76,20 @@ void add_coat(const MetallicRoughnessBsdf& bsdf, const Vec3& wi, BsdfValue& sum)
   sum.pdf += bsdf.chances[kCoat] * coat.pdf;
 }
 
+/// Returns the value of the diffuse part, for wi on the side of wo. `through`: the share of the
+/// light that passes the coat. With the albedo a of the reflection, the diffuse light has the
+/// factor (1 - a(wo)) (1 - a(wi)) / (1 - mean of a) (Kelemen and Szirmay-Kalos 2001, eq. 5). `left`
+/// is 1 - a(wi), and matte_share is the rest of the factor.
+Rgb diffuse(const MetallicRoughnessBsdf& bsdf, const Local& directions, double through) {
+  const double matte = (1 - bsdf.metallic) * (1 - bsdf.transmission);
+  if (!(matte > 0)) {
+    return {};
+  }
+  const double pdf = cosine_hemisphere_pdf(directions.i.z);
+  const double left = 1 - ggx_albedo_table().at(directions.i.z, bsdf.surface.roughness)(bsdf.f0);
+  return scaled(bsdf.base, matte * pdf * bsdf.matte_share * left * through);
+}
+
 /// Adds reflection and diffuse light, for wi on the side of wo.
 void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, double through,
                BsdfValue& sum) {
@@ -85,16 +99,8 @@ void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
   const auto rim = static_cast<float>(mirror.rim);
   sum.value += scaled(f0 * (1 - rim) + gray(rim), mirror.value * through);
   sum.pdf += bsdf.chances[kReflection] * mirror.pdf;
-  const double matte = (1 - bsdf.metallic) * (1 - bsdf.transmission);
-  const double pdf = cosine_hemisphere_pdf(directions.i.z);
-  // With the albedo a of the reflection, the diffuse light has the factor
-  // (1 - a(wo)) (1 - a(wi)) / (1 - mean of a) (Kelemen and Szirmay-Kalos 2001, eq. 5). `left` is
-  // 1 - a(wi), and matte_share is the rest of the factor.
-  if (matte > 0) {
-    const double left = 1 - ggx_albedo_table().at(directions.i.z, bsdf.surface.roughness)(bsdf.f0);
-    sum.value += scaled(bsdf.base, matte * pdf * bsdf.matte_share * left * through);
-  }
-  sum.pdf += bsdf.chances[kDiffuse] * pdf;
+  sum.value += diffuse(bsdf, directions, through);
+  sum.pdf += bsdf.chances[kDiffuse] * cosine_hemisphere_pdf(directions.i.z);
 }
 
 /// Adds transmission, for wi on the side opposite to wo. Transmission is computed as a reflection
@@ -231,6 +237,13 @@ BsdfValue evaluate(const MetallicRoughnessBsdf& bsdf, const Vec3& wi) {
     add_below(bsdf, directions, below_coat(bsdf, wi), sum);
   }
   return sum;
+}
+
+Rgb diffuse_part(const MetallicRoughnessBsdf& bsdf, const Vec3& wi) {
+  const Local directions = local(bsdf.normal.shading, bsdf.wo, wi);
+  return dot(wi, bsdf.normal.geometric) > 0 && directions.i.z > 0
+             ? diffuse(bsdf, directions, below_coat(bsdf, wi))
+             : Rgb{};
 }
 
 }  // namespace bandsaw

@@ -58,5 +58,7 @@ MetallicRoughnessBsdf metallic_roughness_at(const MetallicRoughness& material, c
 std::optional<BsdfSample> sample(const MetallicRoughnessBsdf& bsdf, double u, double v,
                                  double lobe);
 BsdfValue evaluate(const MetallicRoughnessBsdf& bsdf, const Vec3& wi);
+/// Returns the value of the diffuse part alone.
+Rgb diffuse_part(const MetallicRoughnessBsdf& bsdf, const Vec3& wi);
 
 }  // namespace bandsaw

@@ -31,6 +31,11 @@ bool leaves(const PlasticBsdf& bsdf, const Vec3& wi) {
   return dot(wi, bsdf.normal.geometric) > 0 && dot(wi, bsdf.normal.shading) > 0;
 }
 
+/// Returns the cosine between wi and the shading normal.
+double cosine_of(const PlasticBsdf& bsdf, const Vec3& wi) {
+  return std::min(1.0, dot(wi, bsdf.normal.shading));
+}
+
 /// Adds value and pdf of the reflection of a rough coat.
 void add_coat(const PlasticBsdf& bsdf, const Vec3& wi, BsdfValue& sum) {
   const Basis frame = orthonormal_basis(bsdf.normal.shading);
@@ -107,15 +112,22 @@ BsdfValue evaluate(const PlasticBsdf& bsdf, const Vec3& wi) {
   if (!leaves(bsdf, wi)) {
     return {};
   }
-  const double cos_i = std::min(1.0, dot(wi, bsdf.normal.shading));
-  const double pdf = cosine_hemisphere_pdf(cos_i);
   BsdfValue sum;
-  sum.value = bsdf.diffuse * static_cast<float>(pdf * bsdf.passing * bsdf.coat.passing(cos_i));
-  sum.pdf = (1 - bsdf.specular_chance) * pdf;
+  sum.value = diffuse_part(bsdf, wi);
+  sum.pdf = (1 - bsdf.specular_chance) * cosine_hemisphere_pdf(cosine_of(bsdf, wi));
   if (bsdf.facets) {
     add_coat(bsdf, wi, sum);
   }
   return sum;
+}
+
+Rgb diffuse_part(const PlasticBsdf& bsdf, const Vec3& wi) {
+  if (!leaves(bsdf, wi)) {
+    return {};
+  }
+  const double cos_i = cosine_of(bsdf, wi);
+  return bsdf.diffuse *
+         static_cast<float>(cosine_hemisphere_pdf(cos_i) * bsdf.passing * bsdf.coat.passing(cos_i));
 }
 
 }  // namespace bandsaw

@@ -39,5 +39,7 @@ PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textur
 std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, double u, double v, double lobe);
 /// Returns value and pdf, without the delta reflection of a smooth coat.
 BsdfValue evaluate(const PlasticBsdf& bsdf, const Vec3& wi);
+/// Returns the value of the diffuse part alone.
+Rgb diffuse_part(const PlasticBsdf& bsdf, const Vec3& wi);
 
 }  // namespace bandsaw

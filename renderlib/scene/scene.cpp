@@ -138,12 +138,16 @@ std::vector<std::optional<GridMedium>> grid_media_of(const Media& media) {
   return result;
 }
 
+/// Returns true if an instance, a mesh or a boundary of a medium moves.
+bool anything_moves(const SceneDescription& scene) {
+  return moves(scene.geometry) || moves(scene.media.boundaries);
+}
+
 SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   SceneFeatures features;
   features.lights = !lights.empty();
   features.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
-  features.motion =
-      scene.camera_at_close.has_value() || moves(scene.geometry) || moves(scene.media.boundaries);
+  features.motion = scene.camera_at_close.has_value() || anything_moves(scene);
   features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
   features.mixtures = std::any_of(
       scene.materials.begin(), scene.materials.end(),
@@ -246,7 +250,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, traversal, accels));
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background);
   const SceneFeatures features = features_of(own, scene->lights_);
-  scene->moves_ = features.motion;
+  scene->moves_ = anything_moves(own);
   scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
   scene->features_ = features | forced;
   if (scene->features_.grids) {

@@ -81,8 +81,8 @@ class Scene {
   const std::vector<Texture>& textures() const { return description_.textures; }
   /// Returns the features that the scene uses, and those that were forced.
   const SceneFeatures& features() const { return features_; }
-  /// Returns true if the camera, an instance or a mesh moves during the shutter interval. Forced
-  /// features do not change it.
+  /// Returns true if an instance, a mesh or a boundary of a medium moves during the shutter
+  /// interval. A camera that moves alone does not count. Forced features do not change it.
   bool moves() const { return moves_; }
   /// Returns true if neighbouring pixels reuse each other's path vertices
   /// (integrate/path_reuse.h). Forced features do not change it.

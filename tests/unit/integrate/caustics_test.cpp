@@ -18,6 +18,7 @@
 #include "renderlib/integrate/path.h"
 #include "renderlib/integrate/photon_sources.h"
 #include "renderlib/integrate/trace_photons.h"
+#include "tests/support/environments.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -50,8 +51,9 @@ struct Expected {
 
 /// Estimates the radiance that arrives at `eye` from each point after at most two scatterings, with
 /// 48 maps that have different seeds. Expects that the mean of the estimates is the expected
-/// radiance within 4 standard errors plus 2 % for bias.
-void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expected>& expected) {
+/// radiance within 4 standard errors plus 2 % for bias. `time`: of the rays.
+void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expected>& expected,
+                     double time = 0) {
   const Casters casters(scene);
   Pool pool(2);
   std::vector<test::Moments> moments(expected.size());
@@ -62,7 +64,7 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
     caustics.use_for_all(*map);
     const PathOptions options{.max_depth = 2, .maps = &caustics};
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const Ray ray{.origin = eye, .direction = normalize(expected[i].point - eye)};
+      const Ray ray{.origin = eye, .direction = normalize(expected[i].point - eye), .time = time};
       PathCounts counts;
       moments[i].add(path_radiance(scene, ray, PixelSampler(5, 0, 0), seed, options, counts).g);
     }
@@ -108,6 +110,102 @@ TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
                  (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
   }
   expect_radiance(*scene, {-3, -1, 3}, expected);
+}
+
+// Path tracing never finds the light of a lamp without size in a mirror: no shadow ray leaves the
+// mirror, and no path hits the lamp. Photons find it, and the mirror lights the wall like a second
+// lamp below the floor.
+TEST(Caustics, MeetTheClosedFormOfALampWithoutSizeAboveAMirror) {
+  SceneMaker room;
+  const MaterialId wall = room.diffuse(0.5f);
+  room.quad({-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, room.metal(0.8f, 0));
+  room.quad({4, -5, 0}, {0, 10, 0}, {0, 0, 10}, wall);
+  room.camera({-3, 0, 3}, {4, 0, 3}, 60);
+  const std::vector<Vec3> points{{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}};
+
+  SceneMaker with_point = room;
+  with_point.scene.lights.push_back(PointLight{{0, 0, 2}, gray(7)});
+  SceneMaker with_spot = room;
+  SpotLight spot{.position = {0, 0, 2}, .direction = {1, 0, 0}, .intensity = gray(7)};
+  spot.cos_inner = std::cos(1.4);
+  spot.cos_outer = std::cos(1.5);
+  with_spot.scene.lights.push_back(spot);
+  std::vector<Expected> of_point;
+  for (const Vec3& to : points) {
+    const double own = length(to - Vec3{0, 0, 2});
+    const double mirrored = length(to - Vec3{0, 0, -2});
+    of_point.push_back(
+        {to, 0.5 * kInvPi * 7 *
+                 (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
+  }
+  expect_radiance(*with_point.build(), {-3, -1, 3}, of_point);
+  expect_radiance(*with_spot.build(), {-3, -1, 3}, of_point);
+
+  SceneMaker with_sun = room;
+  with_sun.scene.lights.push_back(DirectionalLight{normalize(Vec3{1, 0, -1}), gray(3)});
+  std::vector<Expected> of_sun;
+  for (const Vec3& to : points) {
+    of_sun.push_back({to, 0.5 * kInvPi * 3 * std::sqrt(0.5) * 1.8});
+  }
+  expect_radiance(*with_sun.build(), {-3, -1, 3}, of_sun);
+}
+
+// The mirror sinks from z = 0 to z = -1/2 while the shutter is open. A path must be lit only by
+// photons that met the mirror at about the time of the path. The times are in the middle of a part
+// of the shutter interval (TracedMaps::parts), where the mean over the part is nearly the value.
+TEST(Caustics, MeetTheClosedFormOfAMovingMirrorAtEachTime) {
+  SceneMaker maker;
+  maker.quad({4, -5, -1}, {0, 10, 0}, {0, 0, 11}, maker.diffuse(0.5f));
+  maker.scene.lights.push_back(PointLight{{0, 0, 2}, gray(7)});
+  maker.camera({-3, 0, 3}, {4, 0, 3}, 60);
+  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
+  Geometry& geometry = maker.scene.geometry;
+  geometry.groups.resize(1);
+  geometry.groups[0].quads.push_back({{-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, maker.metal(0.8f, 0)});
+  geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({0, 0, -0.5}))}}};
+  geometry.instances.push_back(
+      {.material = kOwnMaterial, .to_world = {}, .group = GroupId{0}, .frame = FrameId{0}});
+  const auto scene = maker.build();
+  EXPECT_TRUE(can_have_caustic_maps(*scene, Casters(*scene)));
+  for (const double time : {1.0 / 16, 9.0 / 16, 15.0 / 16}) {
+    SCOPED_TRACE(time);
+    std::vector<Expected> expected;
+    for (const Vec3& to : {Vec3{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}}) {
+      const double own = length(to - Vec3{0, 0, 2});
+      const double mirrored = length(to - Vec3{0, 0, -2 - time});
+      expected.push_back(
+          {to, 0.5 * kInvPi * 7 *
+                   (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
+    }
+    expect_radiance(*scene, {-3, -1, 3}, expected, time);
+  }
+}
+
+// Photons arrive at the place where a surface was at another time, so a moving surface is no
+// receiver. A caster may move.
+TEST(Caustics, MovingSurfacesAreNoReceivers) {
+  SceneMaker maker;
+  const MaterialId gray_wall = maker.diffuse(0.5f);
+  const MaterialId mirror = maker.metal(0.8f, 0);
+  maker.sphere({0, 0, 0}, 1, gray_wall);
+  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
+  Geometry& geometry = maker.scene.geometry;
+  geometry.groups.resize(1);
+  geometry.groups[0].spheres.push_back({{3, 0, 0}, 1, gray_wall});
+  geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({0, 0, -0.5}))}}};
+  geometry.instances.push_back(
+      {.material = kOwnMaterial, .to_world = {}, .group = GroupId{0}, .frame = FrameId{0}});
+  const auto scene = maker.build();
+  const Casters casters(*scene);
+  const Vec3 up{0, 0, 1};
+  const DiffuseBsdf diffuse{{up, up}, gray(0.5f)};
+  SurfacePoint still;
+  still.id = {.instance = 0, .primitive = 0};
+  SurfacePoint moving;
+  moving.id = {.instance = 1, .primitive = 0};
+  EXPECT_EQ(caustic_role(casters, still, gray_wall, diffuse), CausticRole::kReceiver);
+  EXPECT_EQ(caustic_role(casters, moving, gray_wall, diffuse), CausticRole::kOther);
+  EXPECT_EQ(caustic_role(casters, moving, mirror, MirrorBsdf{}), CausticRole::kCaster);
 }
 
 // All light of a small lamp in the middle of a ball meets the glass at right angles. The glass
@@ -376,6 +474,124 @@ TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
   }
 }
 
+// Fuzzy metal and rough glass scatter the light of a lamp without size also without maps, by light
+// sampling.
+TEST(Caustics, ChangeNoMeanOfALampWithoutSizeAtFuzzyMetalAndRoughGlass) {
+  for (const bool glass : {false, true}) {
+    SCOPED_TRACE(glass);
+    SceneMaker maker;
+    add_room(maker, maker.diffuse(0.5f));
+    maker.scene.lights.push_back(PointLight{{0.5, 0.6, 1}, gray(2)});
+    MaterialId caster = maker.metal(0.9f, 0.2);
+    if (glass) {
+      caster = maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.4});
+    }
+    maker.sphere({0, 0, -0.8}, 0.7, caster);
+    const auto scene = maker.build();
+    const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{0.95, 0.4, -3.9})};
+    for (const std::uint32_t max_depth : {2u, 6u}) {
+      expect_same_mean(*scene, ray, max_depth);
+    }
+  }
+}
+
+/// A floor under a sky that is uniform except for one bright texel, and a ball of this material.
+std::shared_ptr<const Scene> ball_under_sun(SceneMaker maker, MaterialId ball) {
+  maker.scene.background.environment = Environment{
+      .images = {maker.texture({test::float_image(32, 16, [](std::uint32_t x, std::uint32_t y) {
+        return x == 5 && y == 3 ? 300.0f : 1.0f;
+      })})}};
+  maker.quad({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}, maker.diffuse(0.5f));
+  maker.sphere({0, 0.7, 0}, 0.7, ball);
+  maker.camera({0, 2, 4}, {0, 0, 0}, 40);
+  return maker.build();
+}
+
+// Photons carry the light of the bright texel, and paths find that of the rest of the sky. At fuzzy
+// metal and rough glass, light sampling finds the bright texel too.
+TEST(Caustics, ChangeNoMeanUnderAnEnvironmentWithASun) {
+  const auto expect = [](const Scene& scene) {
+    EXPECT_TRUE(can_have_caustic_maps(scene, Casters(scene)));
+    for (const Vec3& to : {Vec3{0.5, 0, 0.9}, {1.3, 0, 0.2}, {-0.7, 0, 0.8}}) {
+      const Ray ray{.origin = {0, 2, 4}, .direction = normalize(to - Vec3{0, 2, 4})};
+      expect_same_mean(scene, ray, 6);
+    }
+  };
+  SceneMaker maker;
+  expect(*ball_under_sun(maker, maker.glass(1.5)));
+  maker = SceneMaker();
+  expect(*ball_under_sun(maker, maker.metal(0.9f, 0.3)));
+  maker = SceneMaker();
+  expect(*ball_under_sun(maker,
+                         maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.4})));
+}
+
+TEST(Caustics, PhotonsCarryTheSunAndNotTheSky) {
+  SceneMaker maker;
+  const auto scene = ball_under_sun(maker, maker.glass(1.5));
+  const Environment& sky = *scene->background().environment;
+  const Vec3 sun = direction_of(sky, scene->textures(), {0, 5.5, 3.5});
+  const Vec3 beside = direction_of(sky, scene->textures(), {0, 15.5, 3.5});
+  EXPECT_TRUE(photons_carry(scene->lights(), sun));
+  EXPECT_FALSE(photons_carry(scene->lights(), beside));
+}
+
+/// Materials with a diffuse part and a lobe that is not wide: glTF's and plastic. The lobes of the
+/// last two are so narrow that paths find their light.
+std::array<Material, 4> polished_materials(SceneMaker& maker) {
+  const TextureId color = maker.texture(ConstantTexture{gray(0.5f)});
+  const auto gltf = [&](double roughness) {
+    MetallicRoughness material;
+    material.base_color.texture = color;
+    material.metallic.factor = 0;
+    material.roughness.factor = roughness;
+    return Material{material};
+  };
+  const auto plastic = [&](double alpha) {
+    Plastic material;
+    material.reflectance = color;
+    material.surface.alpha_u = alpha;
+    material.surface.alpha_v = alpha;
+    return Material{material};
+  };
+  return {gltf(0.4), plastic(0.15), gltf(0.25), plastic(0.07)};
+}
+
+// Photons light the diffuse part of a polished surface, and paths find the light of its narrow
+// lobe. The lamp is in glass, so without maps BSDF sampling alone finds it. The camera sees its
+// reflection in the floor, so a large part of the light comes from the narrow lobe.
+TEST(Caustics, ChangeNoMeanOnPolishedSurfaces) {
+  for (std::size_t which = 0; which < 4; ++which) {
+    SCOPED_TRACE(which);
+    SceneMaker maker;
+    add_room(maker, maker.material(polished_materials(maker)[which]));
+    maker.sphere({0, 0, 0}, 0.3, maker.lamp(10));
+    maker.sphere({0, 0, 0}, 0.5, maker.glass(1.5));
+    const auto scene = maker.build();
+    const Ray ray{.origin = {1.8, -1, 0}, .direction = normalize(Vec3{-1.8, -3, 0})};
+    for (const std::uint32_t max_depth : {3u, 8u}) {
+      expect_same_mean(*scene, ray, max_depth);
+    }
+  }
+}
+
+// The camera sees the reflection of fuzzy metal in the floor. Light sampling at the metal finds the
+// lamp too.
+TEST(Caustics, ChangeNoMeanWhereAPolishedFloorShowsFuzzyMetal) {
+  for (std::size_t which = 0; which < 4; ++which) {
+    SCOPED_TRACE(which);
+    SceneMaker maker;
+    add_room(maker, maker.material(polished_materials(maker)[which]));
+    maker.sphere({1.2, -0.5, 0}, 0.25, maker.lamp(10));
+    maker.sphere({0, 0, 0}, 0.5, maker.metal(0.9f, 0.2));
+    const auto scene = maker.build();
+    const Ray ray{.origin = {1.8, -1, 0}, .direction = normalize(Vec3{-1.8, -3, 0})};
+    for (const std::uint32_t max_depth : {2u, 6u}) {
+      expect_same_mean(*scene, ray, max_depth);
+    }
+  }
+}
+
 TEST(Caustics, MapsDependNeitherOnThreadsNorOnChunks) {
   const auto scene = lamp_in_glass(1.5, 0.2).build();
   const Casters casters(*scene);
@@ -428,6 +644,11 @@ TEST(Caustics, ComeFromMapsForSmallLampsOnly) {
   EXPECT_TRUE(come_from_maps(*lamp_in_glass(1.5, 0.05).build()));
   EXPECT_FALSE(come_from_maps(*lamp_in_glass(1.5, 0.4).build()));
   EXPECT_FALSE(come_from_maps(*test::cornell_box().build()));
+  // Paths never find the light of a lamp without size in glass, so maps are used although the other
+  // lamp is large.
+  SceneMaker with_point = lamp_in_glass(1.5, 0.4);
+  with_point.scene.lights.push_back(PointLight{{1.5, 1.5, 1.5}, gray(2)});
+  EXPECT_TRUE(come_from_maps(*with_point.build()));
   EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, {pool, kGoOn})->sources,
             nullptr);
 }
@@ -442,33 +663,49 @@ TEST(Caustics, HaveNoMapsWithoutCastersOrWithNestedGlassOrHiddenLamps) {
   SceneMaker nested = lamp_in_glass(1.5, 0.05);
   nested.scene.materials.push_back(Material{Dielectric{.priority = 1}});
   EXPECT_FALSE(possible(nested));
+  SceneMaker moving_camera = lamp_in_glass(1.5, 0.05);
+  moving_camera.scene.camera_at_close = moving_camera.scene.camera;
+  std::get<PerspectiveCamera>(*moving_camera.scene.camera_at_close).position.x += 0.1;
+  EXPECT_TRUE(possible(moving_camera));
   SceneMaker hidden = lamp_in_glass(1.5, 0.05);
   hidden.scene.materials.push_back(
       Material{Emissive{.radiance = hidden.texture(ConstantTexture{{1, 1, 1}}), .hidden = true}});
   EXPECT_FALSE(possible(hidden));
 }
 
-TEST(Caustics, ReceiversHaveWideLobes) {
+TEST(Caustics, ReceiversHaveAWideLobe) {
   const Vec3 up{0, 0, 1};
   const SidedNormals normal{up, up};
-  EXPECT_TRUE(receives_caustics(DiffuseBsdf{normal, gray(0.5f)}));
-  EXPECT_FALSE(receives_caustics(MirrorBsdf{}));
-  EXPECT_FALSE(receives_caustics(BlackBsdf{}));
-  EXPECT_FALSE(receives_caustics(FuzzyMetalBsdf{normal, gray(0.5f), up, 1}));
+  EXPECT_EQ(role_of_receiver(DiffuseBsdf{normal, gray(0.5f)}), CausticRole::kReceiver);
+  EXPECT_EQ(role_of_receiver(MirrorBsdf{}), CausticRole::kOther);
+  EXPECT_EQ(role_of_receiver(BlackBsdf{}), CausticRole::kOther);
+  EXPECT_EQ(role_of_receiver(FuzzyMetalBsdf{normal, gray(0.5f), up, 1}), CausticRole::kOther);
   MetallicRoughnessBsdf gltf{};
+  gltf.base = gray(0.5f);
   gltf.surface = {0.5, 0.25};
-  EXPECT_TRUE(receives_caustics(gltf));
+  EXPECT_EQ(role_of_receiver(gltf), CausticRole::kReceiver);
   gltf.surface = {0.4, 0.16};
-  EXPECT_FALSE(receives_caustics(gltf));
+  EXPECT_EQ(role_of_receiver(gltf), CausticRole::kPolishedReceiver);
+  gltf.metallic = 1;
+  EXPECT_EQ(role_of_receiver(gltf), CausticRole::kOther);
+  gltf.metallic = 0;
+  gltf.transmission = 0.5;
+  gltf.chances[3] = 0.5;
+  EXPECT_EQ(role_of_receiver(gltf), CausticRole::kOther);
+  gltf = {};
+  gltf.base = gray(0.5f);
   gltf.surface = {0.5, 0.25};
   gltf.coat = 1;
   gltf.coating = {0.1, 0.01};
-  EXPECT_FALSE(receives_caustics(gltf));
+  EXPECT_EQ(role_of_receiver(gltf), CausticRole::kPolishedReceiver);
   PlasticBsdf plastic{};
-  EXPECT_TRUE(receives_caustics(plastic));
+  plastic.diffuse = gray(0.5f);
+  EXPECT_EQ(role_of_receiver(plastic), CausticRole::kReceiver);
   plastic.facets = Facets{};
   plastic.facets->alpha_u = 0.1;
-  EXPECT_FALSE(receives_caustics(plastic));
+  EXPECT_EQ(role_of_receiver(plastic), CausticRole::kPolishedReceiver);
+  plastic.diffuse = {};
+  EXPECT_EQ(role_of_receiver(plastic), CausticRole::kOther);
 }
 
 }  // namespace
