@@ -26,17 +26,20 @@ namespace {
 /// the same bits with any number of threads.
 constexpr std::uint32_t kChunks = 64;
 
-/// Number of points that are tried for one indirect photon.
-constexpr std::uint64_t kOriginsPerPhoton = 4;
+/// Number of points that are tried for one indirect photon: first kFewOrigins, and kManyOrigins if
+/// the effective number of origins is then below kEnoughOrigins. Many are needed where a small part
+/// of the surfaces is lit. Elsewhere they take time and do not lower the noise.
+constexpr std::uint64_t kFewOrigins = 1;
+constexpr std::uint64_t kManyOrigins = 4;
+constexpr double kEnoughOrigins = 2048;
 
 /// Each photon spreads its power over a disk. A path takes indirect light from the map if the
 /// path's length since the last receiver is at least this many times the mean radius of the disks,
 /// weighted by power. So the disks are small as seen from the surface that gathers the light.
 constexpr double kGatherRadii = 3;
 
-/// Minimum number of points at which indirect photons may start, so that disks are small even if
-/// the image is small.
-constexpr std::uint64_t kMinOrigins = 1 << 17;
+/// Minimum number of indirect photons, so that disks are small even if the image is small.
+constexpr std::uint64_t kMinIndirectPhotons = 1 << 15;
 
 /// Minimum effective number of origins (TracedMaps::effective_origins). With 256, the brightness of
 /// all indirect light differs from map to map by about 1 / sqrt(256), which is 6 %.
@@ -143,39 +146,79 @@ bool add_caustics(const Scene& scene, const PhotonSources& sources, const Photon
   return !preparation.stopped();
 }
 
+/// The origins of indirect photons.
+struct Origins {
+  std::vector<PhotonOrigin> items;
+  std::vector<double> luminance_up_to;  ///< trace_indirect_photons() describes it
+  double effective = 0;                 ///< TracedMaps::effective_origins
+};
+
+/// Tries the points [first, last) of `last` points, and adds those that are origins to `origins`,
+/// whose items are from the points below `first`. Adds the rays to `maps`. Returns false if
+/// stopped.
+bool add_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& caustics,
+                 const PhotonChunk& all, const Preparation& preparation, Origins& origins,
+                 TracedMaps& maps) {
+  std::vector<PhotonOrigins> found(kChunks);
+  const std::uint64_t points = all.last - all.first;
+  if (!preparation.run(kChunks, [&](std::uint64_t i) {
+        PhotonChunk chunk = all;
+        chunk.first = all.first + points * i / kChunks;
+        chunk.last = all.first + points * (i + 1) / kChunks;
+        found[i] = find_origins(scene, sources, caustics, chunk);
+      })) {
+    return false;
+  }
+  // The powers of the earlier origins were for all.first points.
+  const float part = static_cast<float>(all.first) / static_cast<float>(all.last);
+  for (PhotonOrigin& origin : origins.items) {
+    origin.power = origin.power * part;
+  }
+  for (PhotonOrigins& chunk : found) {
+    maps.rays += chunk.rays;
+    origins.items.insert(origins.items.end(), chunk.items.begin(), chunk.items.end());
+    chunk.items = {};
+  }
+  origins.luminance_up_to.clear();
+  double sum = 0;
+  double squares = 0;
+  for (const PhotonOrigin& origin : origins.items) {
+    const double power = luminance(origin.power);
+    sum += power;
+    squares += power * power;
+    origins.luminance_up_to.push_back(sum);
+  }
+  origins.effective = squares > 0 ? sum * sum / squares : 0;
+  return true;
+}
+
 /// Adds the map of indirect light. `maps` MUST already have the map of caustics, if the sources
 /// have casters. Returns false if stopped.
 bool add_indirect(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
                   const Vec3& origin, const Preparation& preparation, TracedMaps& maps) {
   PhotonMaps caustics(sources.casters);
   caustics.use_for_all(maps);
-  const std::uint64_t points = std::max(key.photons, kMinOrigins);
-  std::vector<PhotonOrigins> found(kChunks);
-  if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        found[i] = find_origins(scene, sources, caustics, chunk_of(key, origin, points, i));
-      })) {
-    return false;
+  const std::uint64_t photons = std::max(key.photons / 4, kMinIndirectPhotons);
+  Origins origins;
+  std::uint64_t tried = 0;
+  for (const std::uint64_t points : {photons * kFewOrigins, photons * kManyOrigins}) {
+    const PhotonChunk chunk{.seed = key.seed,
+                            .map = key.number,
+                            .photons = points,
+                            .first = tried,
+                            .last = points,
+                            .origin = origin};
+    if (origins.effective < kEnoughOrigins &&
+        !add_origins(scene, sources, caustics, chunk, preparation, origins, maps)) {
+      return false;
+    }
+    tried = points;
   }
-  std::vector<PhotonOrigin> origins;
-  for (PhotonOrigins& chunk : found) {
-    maps.rays += chunk.rays;
-    origins.insert(origins.end(), chunk.items.begin(), chunk.items.end());
-    chunk.items = {};
-  }
-  std::vector<double> luminance_up_to;
-  double sum = 0;
-  double squares = 0;
-  for (const PhotonOrigin& start : origins) {
-    const double power = luminance(start.power);
-    sum += power;
-    squares += power * power;
-    luminance_up_to.push_back(sum);
-  }
-  maps.effective_origins = squares > 0 ? sum * sum / squares : 0;
+  maps.effective_origins = origins.effective;
   std::vector<TracedPhotons> chunks(kChunks);
-  if (!origins.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
-        chunks[i] = trace_indirect_photons(scene, sources, origins, luminance_up_to,
-                                           chunk_of(key, origin, points / kOriginsPerPhoton, i));
+  if (!origins.items.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
+        chunks[i] = trace_indirect_photons(scene, sources, origins.items, origins.luminance_up_to,
+                                           chunk_of(key, origin, photons, i));
       })) {
     return false;
   }
