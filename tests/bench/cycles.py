@@ -5,9 +5,13 @@ Prints "cpu_s=…": the CPU seconds of SAMPLES - 1 samples a pixel. The program 
 a render with one sample from the time of a render with SAMPLES samples, so that the preparation of
 the scene does not count.
 
-Supports perspective cameras with a lens, quads, spheres (as meshes, because Cycles has no spheres),
-models in PLY files without a transform, diffuse, emissive, metal and dielectric materials of one
-colour, constant and gradient backgrounds. Anything else ends the program with an error.
+Supports perspective cameras with a lens, quads, boxes, spheres (as meshes, because Cycles has no
+spheres), models in PLY and OBJ files that are scaled and translated, diffuse, emissive, metal and
+dielectric materials of one colour, diffuse checkers in space, homogeneous media in glass, constant
+and gradient backgrounds. Anything else ends the program with an error. Two materials differ:
+- The fuzz of a metal becomes a Beckmann distribution with the same variance of small angles.
+- Cycles does not scale radiance at a refraction. So the radiance of a lamp in glass is divided by
+  the square of the index. This is done only if the lamp and the glass are spheres.
 """
 
 import math
@@ -35,7 +39,7 @@ def parse(text):
         try:
             return float(token)
         except ValueError:
-            return token == "true"
+            return token == "true" if token in ("true", "false") else token
 
     def message():
         fields = {}
@@ -58,18 +62,41 @@ def colour(message):
     return (*message["rgb"][0], 1)
 
 
+# Returns the output of a node that computes a checker, whose cells are boxes in space.
+def make_checker(tree, fields):
+    only(fields, "even", "odd", "mapping", "size")
+    if fields.get("mapping") != ["MAPPING_POSITION"]:
+        sys.exit("cycles.py: does not know checkers by uv")
+    cells = tree.nodes.new("ShaderNodeVectorMath")
+    cells.operation = "MULTIPLY_ADD"
+    tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Position"], cells.inputs[0])
+    cells.inputs[1].default_value = [1 / size for size in fields["size"][0]]
+    # As in Bandsaw, a plane on a border shows the cell with the larger coordinate.
+    cells.inputs[2].default_value = (1e-4,) * 3
+    checker = tree.nodes.new("ShaderNodeTexChecker")
+    tree.links.new(cells.outputs[0], checker.inputs["Vector"])
+    checker.inputs["Scale"].default_value = 1
+    for name, socket in (("odd", "Color1"), ("even", "Color2")):
+        (texture,) = fields[name]
+        only(texture, "color")
+        checker.inputs[socket].default_value = colour(texture["color"][0])
+    return checker.outputs["Color"]
+
+
+NODES = {"diffuse": "BsdfDiffuse", "metal": "BsdfGlossy", "dielectric": "BsdfGlass", "emissive": "Emission"}
+
+
 # Returns Blender's material for a message `material`. The message has a name and one more field,
 # which is the kind of the material.
 def make_material(message):
-    (name,) = message.pop("name")
-    ((kind, (fields,)),) = message.items()
-    material = bpy.data.materials.new(name)
+    only(message, "name", *NODES)
+    ((kind, (fields,)),) = ((name, value) for name, value in message.items() if name != "name")
+    material = bpy.data.materials.new(message["name"][0])
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
     output = tree.nodes.new("ShaderNodeOutputMaterial")
-    nodes = {"diffuse": "BsdfDiffuse", "metal": "BsdfGlossy", "dielectric": "BsdfGlass", "emissive": "Emission"}
-    node = tree.nodes.new("ShaderNode" + nodes[kind])
+    node = tree.nodes.new("ShaderNode" + NODES[kind])
     if kind == "dielectric":
         only(fields, "index_of_refraction")
         node.inputs["IOR"].default_value = fields["index_of_refraction"][0]
@@ -84,12 +111,58 @@ def make_material(message):
             front.inputs[0].default_value = 1
             tree.links.new(back, front.inputs[1])
             tree.links.new(front.outputs[0], node.inputs["Strength"])
-    else:
+    elif kind == "metal":
         only(fields, "color", "fuzz")
         node.inputs["Color"].default_value = colour(fields["color"][0])
-        node.inputs["Roughness"].default_value = fields.get("fuzz", [0])[0]
+        # A uniform point of a ball has the variance fuzz^2 / 5 along each axis. Beckmann's alpha
+        # gives the reflected direction the variance 2 alpha^2. Alpha is the square of roughness.
+        node.distribution = "BECKMANN"
+        node.inputs["Roughness"].default_value = math.sqrt(fields.get("fuzz", [0])[0] / math.sqrt(10))
+    elif "texture" in fields:
+        only(fields, "texture")
+        only(fields["texture"][0], "checker")
+        tree.links.new(make_checker(tree, fields["texture"][0]["checker"][0]), node.inputs["Color"])
+    else:
+        only(fields, "color")
+        node.inputs["Color"].default_value = colour(fields["color"][0])
     tree.links.new(node.outputs[0], output.inputs["Surface"])
     return material
+
+
+# Returns a copy of a material, with the medium of this message behind the surface.
+def filled(material, medium):
+    only(medium, "name", "albedo", "density", "anisotropy")
+    material = material.copy()
+    tree = material.node_tree
+    total = tree.nodes.new("ShaderNodeAddShader")
+    for i, kind in enumerate(("Scatter", "Absorption")):  # albedo and 1 - albedo, times the density
+        node = tree.nodes.new("ShaderNodeVolume" + kind)
+        node.inputs["Color"].default_value = colour(medium["albedo"][0])
+        node.inputs["Density"].default_value = medium.get("density", [1])[0]
+        tree.links.new(node.outputs[0], total.inputs[i])
+    tree.nodes["Volume Scatter"].inputs["Anisotropy"].default_value = medium.get("anisotropy", [0])[0]
+    tree.links.new(total.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+    return material
+
+
+# Returns a copy of the material of a lamp, for a lamp in glass with this index of refraction.
+def emitting_in_glass(material, index):
+    material = material.copy()
+    radiance = material.node_tree.nodes["Emission"].inputs["Color"]
+    radiance.default_value = [value / index**2 for value in radiance.default_value]
+    return material
+
+
+# Returns the index of refraction of the glass around a sphere; 1 if it is not in a sphere of glass.
+def index_around(sphere, scene):
+    glass = {m["name"][0]: m["dielectric"][0] for m in scene["material"] if "dielectric" in m}
+    index = 1
+    for shape in scene["shape"]:
+        if "sphere" in shape and shape["material"][0] in glass:
+            (around,) = shape["sphere"]
+            if math.dist(sphere["center"][0], around["center"][0]) + sphere["radius"][0] < around["radius"][0]:
+                index *= glass[shape["material"][0]]["index_of_refraction"][0]
+    return index
 
 
 # Adds an object to the scene. The material belongs to the object, because spheres share a mesh.
@@ -113,32 +186,64 @@ def sphere_mesh(segments):
     return mesh
 
 
+# Returns the mesh of a box. The normals of its faces point outwards.
+def box_mesh(low, high):
+    corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh = bpy.data.meshes.new("box")
+    mesh.from_pydata(corners, [], faces)
+    return mesh
+
+
+# Returns the mesh of a model's file, in the file's coordinates and without materials.
+def model_mesh(path):
+    load = {".ply": bpy.ops.import_mesh.ply, ".obj": bpy.ops.wm.obj_import}
+    load[os.path.splitext(path)[1]](filepath=path)
+    (thing,) = bpy.context.selected_objects
+    mesh = thing.data
+    bpy.data.objects.remove(thing)
+    mesh.materials.clear()
+    return mesh
+
+
 # Adds the shapes and models of the message `scene`. `materials` has Blender's material for each
 # name. The files of models are relative to `folder`.
 def add_shapes(scene, materials, folder):
+    media = {medium["name"][0]: medium for medium in scene.get("medium", [])}
+    lamps = {message["name"][0] for message in scene["material"] if "emissive" in message}
     spheres = {}
     for shape in scene.get("shape", []):
-        only(shape, "quad", "sphere", "material")
+        only(shape, "quad", "box", "sphere", "material", "interior")
         material = materials[shape["material"][0]]
+        if "interior" in shape:
+            material = filled(material, media[shape["interior"][0]])
         if "quad" in shape:
             corner, u, v = (Vector(shape["quad"][0][k][0]) for k in ("corner", "u", "v"))
             mesh = bpy.data.meshes.new("quad")
             mesh.from_pydata([corner, corner + u, corner + u + v, corner + v], [], [(0, 1, 2, 3)])
             add_object(mesh, material)
             continue
-        radius = shape["sphere"][0]["radius"][0]
-        segments = 1024 if radius > 50 else 64  # a large sphere is a ground, whose facets would be seen
+        if "box" in shape:
+            add_object(box_mesh(shape["box"][0]["min"][0], shape["box"][0]["max"][0]), material)
+            continue
+        (sphere,) = shape["sphere"]
+        if shape["material"][0] in lamps:
+            material = emitting_in_glass(material, index_around(sphere, scene))
+        radius = sphere["radius"][0]
+        # A very large sphere is a ground, whose facets would be seen. The edges of small emissive
+        # triangles must not be much longer than 1: Cycles 3.4 would sample their solid angles, which
+        # it computes with errors of about 10 %.
+        segments = 1024 if radius > 500 else 256 if radius > 16 else 64
         if segments not in spheres:
             spheres[segments] = sphere_mesh(segments)
         thing = add_object(spheres[segments], material)
-        thing.location = shape["sphere"][0]["center"][0]
+        thing.location = sphere["center"][0]
         thing.scale = (radius,) * 3
     for model in scene.get("model", []):
-        only(model, "file", "material")
-        bpy.ops.import_mesh.ply(filepath=os.path.join(folder, model["file"][0]))
-        thing = bpy.context.object
-        thing.matrix_world = Matrix()
-        thing.data.materials.append(materials[model["material"][0]])
+        only(model, "file", "material", "scale", "translate")
+        thing = add_object(model_mesh(os.path.join(folder, model["file"][0])), materials[model["material"][0]])
+        thing.scale = model.get("scale", [(1, 1, 1)])[0]
+        thing.location = model.get("translate", [(0, 0, 0)])[0]
 
 
 def set_camera(fields):
@@ -184,8 +289,8 @@ def set_background(fields):
 
 
 # Turns off everything that makes Cycles biased. Also turns off adaptive sampling, so that both
-# renderers take the same number of samples in each pixel.
-def set_quality(width, height, seed):
+# renderers take the same number of samples in each pixel. A path has at most `depth` scatterings.
+def set_quality(width, height, seed, depth):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = width, height
@@ -201,8 +306,9 @@ def set_quality(width, height, seed):
     cycles.light_sampling_threshold = 0
     cycles.blur_glossy = 0
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
-    for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max"):
-        setattr(cycles, kind + "_bounces", 50)
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    for kind in ("max", "diffuse", "glossy", "transmission", "volume"):
+        setattr(cycles, kind + "_bounces", depth - 1)  # Cycles does not count the last scattering
 
 
 def rendered(samples):
@@ -219,9 +325,13 @@ def main():
     path, width, height, samples, seed, output = sys.argv[sys.argv.index("--") + 1 :]
     with open(path) as file:
         scene = parse(file.read())
-    only(scene, "camera", "image", "integrator", "background", "material", "shape", "model")
+    only(scene, "camera", "image", "integrator", "background", "material", "medium", "shape", "model")
+    # exposure and tone do not change the EXR file
+    only(scene.get("image", [{}])[0], "width", "height", "exposure", "tone")
+    integrator = scene.get("integrator", [{}])[0]
+    only(integrator, "max_depth")
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    set_quality(int(width), int(height), int(seed))
+    set_quality(int(width), int(height), int(seed), int(integrator.get("max_depth", [32])[0]))
     set_camera(scene["camera"][0])
     set_background(scene.get("background", [{}])[0])
     materials = {m["name"][0]: make_material(m) for m in scene["material"]}
