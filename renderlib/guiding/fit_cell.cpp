@@ -327,6 +327,19 @@ double second_moment(absl::Span<const Densities> densities, double share) {
   return sum;
 }
 
+/// Returns the expected second moment of the estimate for light of the records' solid angles, in
+/// units of the squared mean. With directions sampled by the cosine, light of a small solid angle w
+/// has the second moment pi / w.
+double moment_of_lights(absl::Span<const GuidingRecord> records) {
+  double sum = 0;
+  double weight = 0;
+  for (const GuidingRecord& record : records) {
+    weight += record.weight;
+    sum += record.solid_angle > 0 ? record.weight * kPi / record.solid_angle : 0;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
 /// Returns the share of kShares that has the least second moment, or 0 if no share lowers it.
 double best_share(absl::Span<const Densities> densities) {
   double best = 0;
@@ -361,6 +374,7 @@ GuidingCell fit_cell(absl::Span<const GuidingRecord> records) {
   const Place place = place_of(records);
   Light light = light_of(place, records);
   cell.irradiance = static_cast<float>(light.irradiance);
+  cell.moment_of_lights = static_cast<float>(moment_of_lights(records));
   if (light.seen.size() < kMinRecordsOfCell || light.effective < kMinRecordsOfCell) {
     return cell;
   }

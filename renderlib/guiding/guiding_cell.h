@@ -38,6 +38,9 @@ struct GuidingCell {
   /// Expected second moment of a sampled direction's contribution at a diffuse surface without
   /// guiding, in units of the squared mean. Estimated from light that was left out of the fit.
   float moment = 1;
+  /// The same moment without guiding, for photons: computed from GuidingRecord::solid_angle as if
+  /// mirrors and glass did not change the solid angle of the light. 0 if it is not known.
+  float moment_of_lights = 0;
   float guided_moment = 1;  ///< the expected second moment with guiding by `share`
   std::array<GuidingBall, kMaxBalls> balls;
 };

@@ -22,6 +22,9 @@ struct GuidingRecord {
   Float3 source;     ///< where the light comes from; very far away for light of the background
   float weight = 0;  ///< >= 0, finite; 0: the path found no light
   Kind kind = Kind::kPath;
+  /// Of a photon that only mirrors and smooth glass have scattered: the solid angle of its light in
+  /// steradians, as seen from the first caster. 0: unknown, or a delta light.
+  float solid_angle = 0;
 };
 
 /// Returns the number in [0, 6) of the axis direction that is closest to `normal`: +x, -x, +y, …

@@ -82,7 +82,9 @@ void add_cells(const GuidingCells& cells, double reflected, PixelStatistics& to)
     const double radiance = reflected * cells.photons->irradiance;
     expected = std::max(expected, radiance);  // the light of the paths may include it
     to.caustics += radiance;
-    to.by_photons += radiance * radiance * (kMomentOfLamp * cells.photons->moment - 1);
+    const double moment =
+        std::max(kMomentOfLamp * cells.photons->moment, double{cells.photons->moment_of_lights});
+    to.by_photons += radiance * radiance * (moment - 1);
   }
   to.expected += expected;
 }

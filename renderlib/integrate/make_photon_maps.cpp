@@ -153,9 +153,9 @@ struct Origins {
   double effective = 0;                 ///< TracedMaps::effective_origins
 };
 
-/// Tries the points [all.first, all.last), and adds those that are origins to `origins`, whose items
-/// are from the points below all.first. `all.photons` MUST be all.last. Adds the rays to `maps`.
-/// Returns false if stopped.
+/// Tries the points [all.first, all.last), and adds those that are origins to `origins`, whose
+/// items are from the points below all.first. `all.photons` MUST be all.last. Adds the rays to
+/// `maps`. Returns false if stopped.
 bool add_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& caustics,
                  const PhotonChunk& all, const Preparation& preparation, Origins& origins,
                  TracedMaps& maps) {

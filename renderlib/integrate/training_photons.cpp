@@ -22,8 +22,9 @@ namespace {
 /// A photon that has left a caster.
 struct Photon {
   Ray ray;
-  double power = 0;   ///< a luminance
-  SurfacePoint from;  ///< where the ray starts
+  double power = 0;        ///< a luminance
+  SurfacePoint from;       ///< where the ray starts
+  double solid_angle = 0;  ///< GuidingRecord::solid_angle
 };
 
 /// Scatters the photon, which comes from direction `wo`, at the surface. Returns false if it is
@@ -37,6 +38,7 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& w
   }
   // Power is not compressed by refraction, in contrast to radiance.
   photon.power *= luminance(next->weight) / next->compression;
+  photon.solid_angle = next->delta ? photon.solid_angle : 0;
   photon.ray = spawn_ray(point, next->wi);
   photon.from = point;
   return photon.power > 0 && std::isfinite(photon.power);
@@ -58,6 +60,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
                                        : spawn_ray_to(at->point, light.target, 0);
   const double passing = visibility(scene, shadow_ray, out.rays);
   Photon photon;
+  photon.solid_angle = light.delta ? 0 : 1 / light.pdf;
   // The factor 2 is needed because one of the two sides of the caster was chosen.
   photon.power = 2 * passing * luminance(light.radiance) / light.pdf *
                  std::abs(dot(light.direction, at->normal)) / at->pdf;
@@ -92,7 +95,8 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
                            .normal = float3(facing_normal(*hit, wo)),
                            .source = float3(photon.from.position),
                            .weight = static_cast<float>(photon.power / photons),
-                           .kind = GuidingRecord::Kind::kPhoton});
+                           .kind = GuidingRecord::Kind::kPhoton,
+                           .solid_angle = static_cast<float>(photon.solid_angle)});
       return;
     }
     if (!scatter_photon(scene, *hit, wo, sampler.group(sample, group_bsdf(depth)), photon)) {

@@ -65,6 +65,23 @@ TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   }
 }
 
+// The lamp is far away behind the wall, and the wall sees it in a mirror. The photons that arrive
+// at a cell come from a part of the mirror that is much larger than the image of the lamp in it.
+TEST(GuidingGain, OfPhotonsMeetsTheClosedFormOfADistantLampInAMirror) {
+  test::SceneMaker maker;
+  maker.quad({-0.2, -0.2, -2}, {0.4, 0, 0}, {0, 0.4, 0}, maker.diffuse(0.5f));
+  maker.quad({-2, -2, 3}, {8, 0, 0}, {0, 4, 0}, maker.metal(0.9f, 0));
+  maker.sphere({20, 0, -50}, 0.5, maker.lamp(1000));
+  maker.camera({0, 0, -1}, {0, 0, -2}, 15);
+  const Vec3 to_image = Vec3{20, 0, 56} - Vec3{0, 0, -2};
+  const double distance = length(to_image);
+  const double solid_angle = kPi * 0.25 / (distance * distance);
+  const double expected = kPi / (solid_angle * to_image.z / distance) - 1;
+  const GuidingGain gain = gain_of(*maker.build());
+  EXPECT_GT(gain.by_photons, 0.5 * expected);
+  EXPECT_LT(gain.by_photons, 1.3 * expected);
+}
+
 TEST(GuidingGain, IsTheSameForAnyNumberOfThreads) {
   const auto scene = test::lamp_in_glass(1.5, 0.05).build();
   const GuidingGain one = gain_of(*scene, 1);
