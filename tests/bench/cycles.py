@@ -70,7 +70,8 @@ def make_checker(tree, fields):
     cells = tree.nodes.new("ShaderNodeVectorMath")
     cells.operation = "MULTIPLY_ADD"
     tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Position"], cells.inputs[0])
-    cells.inputs[1].default_value = [1 / size for size in fields["size"][0]]
+    (sizes,) = fields["size"]  # one for each axis, or one for all
+    cells.inputs[1].default_value = [1 / size for size in (sizes if isinstance(sizes, list) else [sizes] * 3)]
     # As in Bandsaw, a plane on a border shows the cell with the larger coordinate.
     cells.inputs[2].default_value = (1e-4,) * 3
     checker = tree.nodes.new("ShaderNodeTexChecker")
@@ -214,6 +215,9 @@ def add_shapes(scene, materials, folder):
     spheres = {}
     for shape in scene.get("shape", []):
         only(shape, "quad", "box", "sphere", "material", "interior")
+        if "material" not in shape:
+            sys.exit("cycles.py: does not know shapes without a material")
+    for shape in scene.get("shape", []):
         material = materials[shape["material"][0]]
         if "interior" in shape:
             material = filled(material, media[shape["interior"][0]])
