@@ -59,7 +59,7 @@ struct PhotonMapKey {
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
   /// Number of equal parts of the shutter interval. A path is lit only by photons of the part in
-  /// which it travels. 1 if nothing moves, >= 1.
+  /// which it travels. It is 1 if nothing moves.
   std::uint32_t parts = 1;
   /// Light that receivers (surfaces whose sampled lobes are all wide) scattered
   /// (integrate/indirect_photons.h).

@@ -22,8 +22,9 @@ struct GuidingRecord {
   Float3 source;     ///< where the light comes from; very far away for light of the background
   float weight = 0;  ///< >= 0, finite; 0: the path found no light
   Kind kind = Kind::kPath;
-  /// Of a photon that only mirrors and smooth glass have scattered: the solid angle of its light in
-  /// steradians, as seen from the first caster. 0: unknown, or a delta light.
+  /// For a photon that only mirrors and smooth glass have scattered, this is the solid angle of its
+  /// light in steradians, as seen from the first caster. It is 0 for other photons and for delta
+  /// lights.
   float solid_angle = 0;
 };
 

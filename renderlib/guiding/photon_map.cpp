@@ -1,6 +1,6 @@
 // Builds the photon map. A first tree divides space into places, and the radii of the disks follow
 // from the density of the photons in each place (with_disks). A second tree, with boxes around the
-// disks, finds the photons whose disks contain a point (PhotonMap::split).
+// disks, finds the photons whose disks contain a point (PhotonMap::add_node).
 
 #include "renderlib/guiding/photon_map.h"
 
@@ -182,6 +182,38 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   places[number] = place;
 }
 
+/// Photons that get a box.
+struct Range {
+  std::uint32_t first;
+  std::uint32_t last;
+  int depth;  ///< number of divisions of space so far
+
+  std::uint32_t photons() const { return last - first; }
+};
+
+/// Divides the photons of `all` into up to `most` ranges, and sorts them accordingly. The range
+/// with the most photons is divided until there are `most` ranges or all are leaves.
+std::vector<Range> divide_into(std::size_t most, std::vector<StoredPhoton>& photons,
+                               const Range& all) {
+  const auto by_photons = [](const Range& a, const Range& b) { return a.photons() < b.photons(); };
+  std::vector<Range> ranges{all};
+  while (ranges.size() < most) {
+    const auto largest = std::max_element(ranges.begin(), ranges.end(), by_photons);
+    if (largest->photons() <= kPhotonsOfLeaf) {
+      break;
+    }
+    const Range range = *largest;
+    const Box box = box_of({photons.data() + range.first, range.photons()});
+    const auto half = divide(photons, range.first, range.last, range.depth, box);
+    // Photons that space cannot divide keep their order.
+    const std::uint32_t middle = half.value_or(range.first + range.photons() / 2);
+    const int below = half ? range.depth + 1 : kMaxTreeDepth;
+    *largest = {range.first, middle, below};
+    ranges.insert(largest + 1, {middle, range.last, below});
+  }
+  return ranges;
+}
+
 /// Returns one of the photons, chosen with a probability in proportion to its power. The chosen
 /// photon gets the power of the whole group. It can replace the group where the photons are close
 /// together compared with their disks.
@@ -300,34 +332,12 @@ PhotonMap::PhotonMap(std::vector<StoredPhoton> photons, const Vec3& origin, doub
 void PhotonMap::add_node(std::uint32_t first, std::uint32_t last, int depth, Float3& low,
                          Float3& high) {
   static_assert(kPhotonsOfLeaf <= kWidth);
-  /// Photons that get a box.
-  struct Range {
-    std::uint32_t first;
-    std::uint32_t last;
-    int depth;
-    std::uint32_t photons() const { return last - first; }
-  };
-  const auto by_photons = [](const Range& a, const Range& b) { return a.photons() < b.photons(); };
-  std::vector<Range> ranges{{first, last, depth}};
-  while (ranges.size() < kWidth) {
-    const auto largest = std::max_element(ranges.begin(), ranges.end(), by_photons);
-    if (largest->photons() <= kPhotonsOfLeaf) {
-      break;
-    }
-    const Range range = *largest;
-    const Box box = box_of({photons_.data() + range.first, range.photons()});
-    const auto half = divide(photons_, range.first, range.last, range.depth, box);
-    // Photons that space cannot divide keep their order.
-    const std::uint32_t middle = half.value_or(range.first + range.photons() / 2);
-    const int below = half ? range.depth + 1 : kMaxTreeDepth;
-    *largest = {range.first, middle, below};
-    ranges.insert(largest + 1, {middle, range.last, below});
-  }
+  const std::vector<Range> ranges = divide_into(kWidth, photons_, {first, last, depth});
   const std::size_t number = nodes_.size();
-  Node& unused = nodes_.emplace_back();
+  Node& empty = nodes_.emplace_back();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    unused.bounds[axis].fill(std::numeric_limits<float>::infinity());
-    unused.bounds[axis + 3].fill(-std::numeric_limits<float>::infinity());
+    empty.bounds[axis].fill(std::numeric_limits<float>::infinity());
+    empty.bounds[axis + 3].fill(-std::numeric_limits<float>::infinity());
   }
   Box all;
   for (std::size_t i = 0; i < ranges.size(); ++i) {

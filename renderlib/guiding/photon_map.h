@@ -72,8 +72,7 @@ class PhotonMap {
   /// Maximum number of nodes on the way from the root to a leaf.
   static constexpr std::size_t kMaxLevels = 80;
 
-  /// What a box of a node contains: photons [first, first + photons), or node `first` if `photons`
-  /// is 0.
+  /// The contents of a box: photons [first, first + photons), or node `first` if `photons` is 0.
   struct Child {
     std::uint32_t first = 0;
     std::uint32_t photons = 0;

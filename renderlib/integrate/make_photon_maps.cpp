@@ -65,16 +65,23 @@ Vec3 origin_of(const Scene& scene) {
   return hit ? ahead.origin + ahead.direction * hit.t : view.position;
 }
 
-/// Returns chunk `i` of a map.
-PhotonChunk chunk_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t photons,
-                     std::uint64_t i, std::uint32_t parts = 1) {
+/// Returns all `count` photons, or points that are tried, of a map.
+PhotonChunk all_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t count) {
   return {.seed = key.seed,
           .map = key.number,
-          .photons = photons,
-          .first = photons * i / kChunks,
-          .last = photons * (i + 1) / kChunks,
-          .origin = origin,
-          .parts = parts};
+          .photons = count,
+          .first = 0,
+          .last = count,
+          .origin = origin};
+}
+
+/// Returns chunk `i` of kChunks.
+PhotonChunk chunk_of(const PhotonChunk& all, std::uint64_t i) {
+  const std::uint64_t count = all.last - all.first;
+  PhotonChunk chunk = all;
+  chunk.first = all.first + count * i / kChunks;
+  chunk.last = all.first + count * (i + 1) / kChunks;
+  return chunk;
 }
 
 /// Returns the number of parts into which the shutter interval is divided for map `number`. Light
@@ -126,10 +133,11 @@ std::vector<StoredPhoton> joined(std::vector<TracedPhotons> chunks, TracedMaps& 
 bool add_caustics(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
                   const Vec3& origin, const Preparation& preparation, TracedMaps& maps) {
   maps.parts = parts_of_shutter(scene, key.number);
+  PhotonChunk all = all_of(key, origin, key.photons);
+  all.parts = maps.parts;
   std::vector<TracedPhotons> chunks(kChunks);
   if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        chunks[i] = trace_photons(scene, sources.casters,
-                                  chunk_of(key, origin, key.photons, i, maps.parts));
+        chunks[i] = trace_photons(scene, sources.casters, chunk_of(all, i));
       })) {
     return false;
   }
@@ -160,12 +168,8 @@ bool add_origins(const Scene& scene, const PhotonSources& sources, const PhotonM
                  const PhotonChunk& all, const Preparation& preparation, Origins& origins,
                  TracedMaps& maps) {
   std::vector<PhotonOrigins> found(kChunks);
-  const std::uint64_t points = all.last - all.first;
   if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        PhotonChunk chunk = all;
-        chunk.first = all.first + points * i / kChunks;
-        chunk.last = all.first + points * (i + 1) / kChunks;
-        found[i] = find_origins(scene, sources, caustics, chunk);
+        found[i] = find_origins(scene, sources, caustics, chunk_of(all, i));
       })) {
     return false;
   }
@@ -202,14 +206,10 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   Origins origins;
   std::uint64_t tried = 0;
   for (const std::uint64_t points : {photons * kFewOrigins, photons * kManyOrigins}) {
-    const PhotonChunk chunk{.seed = key.seed,
-                            .map = key.number,
-                            .photons = points,
-                            .first = tried,
-                            .last = points,
-                            .origin = origin};
+    PhotonChunk all = all_of(key, origin, points);
+    all.first = tried;
     if (origins.effective < kEnoughOrigins &&
-        !add_origins(scene, sources, caustics, chunk, preparation, origins, maps)) {
+        !add_origins(scene, sources, caustics, all, preparation, origins, maps)) {
       return false;
     }
     tried = points;
@@ -218,7 +218,7 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   std::vector<TracedPhotons> chunks(kChunks);
   if (!origins.items.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
         chunks[i] = trace_indirect_photons(scene, sources, origins.items, origins.luminance_up_to,
-                                           chunk_of(key, origin, photons, i));
+                                           chunk_of(all_of(key, origin, photons), i));
       })) {
     return false;
   }
@@ -236,7 +236,7 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
 }
 
 /// Returns true if photons may carry light of the scene.
-bool has_lamp(const Scene& scene) {
+bool has_light_for_photons(const Scene& scene) {
   return scene.lights().any_delta() || scene.background().environment ||
          std::any_of(scene.materials().begin(), scene.materials().end(), [](const Material& m) {
            return std::holds_alternative<Emissive>(m.kind) || !is_black(m.emission.radiance.factor);
@@ -280,7 +280,7 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
     return misleads_photons(material) ||
            (mix != nullptr && (casters.casts(mix->a) || casters.casts(mix->b)));
   };
-  return !casters.empty() && casters.complete() && has_lamp(scene) &&
+  return !casters.empty() && casters.complete() && has_light_for_photons(scene) &&
          std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
 }
 

@@ -161,9 +161,7 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   if (is_black(scattered.value)) {
     return {};
   }
-  const Ray shadow_ray =
-      light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
-  const Rgb passing = transmittance(scene, shadow_ray, media, rays);
+  const Rgb passing = transmittance(scene, shadow_ray_to(point, *light), media, rays);
   if (is_black(passing)) {
     return {};
   }

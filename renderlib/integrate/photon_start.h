@@ -43,11 +43,10 @@ struct PhotonStart {
   double pdf = 0;  ///< pdf of the point by area, > 0
 };
 
-/// Chooses a point of a caster at random, and samples a light as seen from this point at this time.
-/// `sampler` and `sample` give the random numbers. Returns std::nullopt if the point's primitive
-/// has no area or no light can be sampled from the point.
+/// Chooses a time while the shutter is open and a point of a caster at random, and samples a light
+/// as seen from this point at this time. `sampler` and `sample` give the random numbers. Returns
+/// std::nullopt if the point's primitive has no area or no light can be sampled from the point.
 std::optional<PhotonStart> start_photon(const Scene& scene, const Casters& casters,
-                                        const PixelSampler& sampler, std::uint64_t sample,
-                                        double time);
+                                        const PixelSampler& sampler, std::uint64_t sample);
 
 }  // namespace bandsaw

@@ -79,11 +79,7 @@ double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
 /// share the power.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
                             std::uint64_t photons, std::uint64_t& rays) {
-  const Shutter& shutter = shutter_of(scene.camera());
-  const double moment = numbers.group(kGroupTime)[0];
-  std::optional<PhotonStart> at =
-      start_photon(scene, casters, numbers.sampler, numbers.photon,
-                   shutter.open + moment * (shutter.close - shutter.open));
+  std::optional<PhotonStart> at = start_photon(scene, casters, numbers.sampler, numbers.photon);
   if (!at || !photons_carry(scene.lights(), at->light)) {
     return std::nullopt;
   }
@@ -94,9 +90,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   if (!(cosine > 0)) {
     return std::nullopt;
   }
-  const Ray shadow_ray =
-      light.distant ? spawn_ray(point, light.direction) : spawn_ray_to(point, light.target, 0);
-  const Rgb passing = transmittance(scene, shadow_ray, numbers.stream(0), rays);
+  const Rgb passing = transmittance(scene, shadow_ray_to(point, light), numbers.stream(0), rays);
   // The factor 2 is needed because one of the two sides of the caster was chosen.
   const double weight = 2 * cosine / (light.pdf * at->pdf * static_cast<double>(photons)) *
                         opacity(scene.material(point.material), scene.textures(), point);

@@ -48,17 +48,12 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& w
 /// point or the photon is absorbed.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const PixelSampler& sampler,
                             std::uint64_t sample, TrainingRecords& out) {
-  const Shutter& shutter = shutter_of(scene.camera());
-  const double moment = sampler.group(sample, kGroupTime)[0];
-  const std::optional<PhotonStart> at = start_photon(
-      scene, casters, sampler, sample, shutter.open + moment * (shutter.close - shutter.open));
+  const std::optional<PhotonStart> at = start_photon(scene, casters, sampler, sample);
   if (!at) {
     return std::nullopt;
   }
   const LightSample& light = at->light;
-  const Ray shadow_ray = light.distant ? spawn_ray(at->point, light.direction)
-                                       : spawn_ray_to(at->point, light.target, 0);
-  const double passing = visibility(scene, shadow_ray, out.rays);
+  const double passing = visibility(scene, shadow_ray_to(at->point, light), out.rays);
   Photon photon;
   photon.solid_angle = light.delta ? 0 : 1 / light.pdf;
   // The factor 2 is needed because one of the two sides of the caster was chosen.

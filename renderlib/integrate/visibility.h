@@ -4,10 +4,17 @@
 
 #include <cstdint>
 
+#include "renderlib/geometry/surface.h"
+#include "renderlib/light/lights.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
+
+/// Returns the shadow ray from the point to a light that was sampled there.
+inline Ray shadow_ray_to(const SurfacePoint& point, const LightSample& light) {
+  return light.distant ? spawn_ray(point, light.direction) : spawn_ray_to(point, light.target, 0);
+}
 
 /// Returns the share of light, in [0, 1], that the surfaces along the ray let through. Only partly
 /// transparent surfaces give other values than 0 and 1. Media are ignored. Adds the number of rays

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "renderlib/integrate/guiding_training.h"
@@ -78,6 +79,21 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
   }
 }
 
+/// The points of a wall in the plane x = 4, above a mirror of reflectance 0.8 that lies at z =
+/// `height`, with their expected radiances. A small lamp at (0, 0, 2) gives a surface that faces it
+/// at distance 1 the irradiance `intensity`.
+std::vector<Expected> wall_above_mirror(double intensity, double height = 0) {
+  std::vector<Expected> expected;
+  for (const Vec3& to : {Vec3{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}}) {
+    const double own = length(to - Vec3{0, 0, 2});
+    const double mirrored = length(to - Vec3{0, 0, 2 * height - 2});
+    expected.push_back(
+        {to, 0.5 * kInvPi * intensity *
+                 (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
+  }
+  return expected;
+}
+
 // Glass that hardly refracts stops shadow rays, but the lamp lights the wall as if the lamp were
 // bare. A sphere of radius r and radiance L at distance d, wholly on one side of a surface's plane,
 // gives the surface the irradiance pi L (r / d)^2 cos.
@@ -101,15 +117,7 @@ TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
   maker.sphere({0, 0, 2}, 0.2, maker.lamp(10));
   maker.camera({-3, 0, 3}, {4, 0, 3}, 60);
   const auto scene = maker.build();
-  std::vector<Expected> expected;
-  for (const Vec3& to : {Vec3{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}}) {
-    const double own = length(to - Vec3{0, 0, 2});
-    const double mirrored = length(to - Vec3{0, 0, -2});
-    expected.push_back(
-        {to, 0.5 * 10 * 0.04 *
-                 (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
-  }
-  expect_radiance(*scene, {-3, -1, 3}, expected);
+  expect_radiance(*scene, {-3, -1, 3}, wall_above_mirror(kPi * 10 * 0.04));
 }
 
 // Path tracing never finds the light of a lamp without size in a mirror: no shadow ray leaves the
@@ -121,7 +129,6 @@ TEST(Caustics, MeetTheClosedFormOfALampWithoutSizeAboveAMirror) {
   room.quad({-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, room.metal(0.8f, 0));
   room.quad({4, -5, 0}, {0, 10, 0}, {0, 0, 10}, wall);
   room.camera({-3, 0, 3}, {4, 0, 3}, 60);
-  const std::vector<Vec3> points{{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}};
 
   SceneMaker with_point = room;
   with_point.scene.lights.push_back(PointLight{{0, 0, 2}, gray(7)});
@@ -130,24 +137,27 @@ TEST(Caustics, MeetTheClosedFormOfALampWithoutSizeAboveAMirror) {
   spot.cos_inner = std::cos(1.4);
   spot.cos_outer = std::cos(1.5);
   with_spot.scene.lights.push_back(spot);
-  std::vector<Expected> of_point;
-  for (const Vec3& to : points) {
-    const double own = length(to - Vec3{0, 0, 2});
-    const double mirrored = length(to - Vec3{0, 0, -2});
-    of_point.push_back(
-        {to, 0.5 * kInvPi * 7 *
-                 (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
-  }
+  const std::vector<Expected> of_point = wall_above_mirror(7);
   expect_radiance(*with_point.build(), {-3, -1, 3}, of_point);
   expect_radiance(*with_spot.build(), {-3, -1, 3}, of_point);
 
   SceneMaker with_sun = room;
   with_sun.scene.lights.push_back(DirectionalLight{normalize(Vec3{1, 0, -1}), gray(3)});
-  std::vector<Expected> of_sun;
-  for (const Vec3& to : points) {
-    of_sun.push_back({to, 0.5 * kInvPi * 3 * std::sqrt(0.5) * 1.8});
+  std::vector<Expected> of_sun = of_point;
+  for (Expected& expected : of_sun) {
+    expected.radiance = 0.5 * kInvPi * 3 * std::sqrt(0.5) * 1.8;
   }
   expect_radiance(*with_sun.build(), {-3, -1, 3}, of_sun);
+}
+
+/// Adds shapes that sink by 1/2 along z while the shutter is open, from time 0 to 1.
+void add_sinking(SceneMaker& maker, const Shapes& shapes) {
+  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
+  Geometry& geometry = maker.scene.geometry;
+  geometry.groups = {shapes};
+  geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({0, 0, -0.5}))}}};
+  geometry.instances.push_back(
+      {.material = kOwnMaterial, .to_world = {}, .group = GroupId{0}, .frame = FrameId{0}});
 }
 
 // The mirror sinks from z = 0 to z = -1/2 while the shutter is open. A path must be lit only by
@@ -158,26 +168,14 @@ TEST(Caustics, MeetTheClosedFormOfAMovingMirrorAtEachTime) {
   maker.quad({4, -5, -1}, {0, 10, 0}, {0, 0, 11}, maker.diffuse(0.5f));
   maker.scene.lights.push_back(PointLight{{0, 0, 2}, gray(7)});
   maker.camera({-3, 0, 3}, {4, 0, 3}, 60);
-  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
-  Geometry& geometry = maker.scene.geometry;
-  geometry.groups.resize(1);
-  geometry.groups[0].quads.push_back({{-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, maker.metal(0.8f, 0)});
-  geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({0, 0, -0.5}))}}};
-  geometry.instances.push_back(
-      {.material = kOwnMaterial, .to_world = {}, .group = GroupId{0}, .frame = FrameId{0}});
+  Shapes sinking;
+  sinking.quads.push_back({{-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, maker.metal(0.8f, 0)});
+  add_sinking(maker, sinking);
   const auto scene = maker.build();
   EXPECT_TRUE(can_have_caustic_maps(*scene, Casters(*scene)));
   for (const double time : {1.0 / 16, 9.0 / 16, 15.0 / 16}) {
     SCOPED_TRACE(time);
-    std::vector<Expected> expected;
-    for (const Vec3& to : {Vec3{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}}) {
-      const double own = length(to - Vec3{0, 0, 2});
-      const double mirrored = length(to - Vec3{0, 0, -2 - time});
-      expected.push_back(
-          {to, 0.5 * kInvPi * 7 *
-                   (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
-    }
-    expect_radiance(*scene, {-3, -1, 3}, expected, time);
+    expect_radiance(*scene, {-3, -1, 3}, wall_above_mirror(7, -time / 2), time);
   }
 }
 
@@ -188,13 +186,9 @@ TEST(Caustics, MovingSurfacesAreNoReceivers) {
   const MaterialId gray_wall = maker.diffuse(0.5f);
   const MaterialId mirror = maker.metal(0.8f, 0);
   maker.sphere({0, 0, 0}, 1, gray_wall);
-  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
-  Geometry& geometry = maker.scene.geometry;
-  geometry.groups.resize(1);
-  geometry.groups[0].spheres.push_back({{3, 0, 0}, 1, gray_wall});
-  geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({0, 0, -0.5}))}}};
-  geometry.instances.push_back(
-      {.material = kOwnMaterial, .to_world = {}, .group = GroupId{0}, .frame = FrameId{0}});
+  Shapes sinking;
+  sinking.spheres.push_back({{3, 0, 0}, 1, gray_wall});
+  add_sinking(maker, sinking);
   const auto scene = maker.build();
   const Casters casters(*scene);
   const Vec3 up{0, 0, 1};
@@ -453,14 +447,15 @@ TEST(Caustics, ChangeNoMean) {
   }
 }
 
-// At casters whose directions have a pdf, light sampling finds the lamp as well. Photons take the
-// place of this light sampling.
-TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
+/// Expects the same mean with and without maps in a room with a ball of fuzzy metal or rough glass.
+/// `add_lamp` adds the lamp. At such casters, whose directions have a pdf, light sampling finds the
+/// lamp as well. Photons take the place of this light sampling.
+void expect_same_mean_at_rough_casters(const std::function<void(SceneMaker&)>& add_lamp) {
   for (const bool glass : {false, true}) {
     SCOPED_TRACE(glass);
     SceneMaker maker;
     add_room(maker, maker.diffuse(0.5f));
-    maker.sphere({0.5, 0.6, 1}, 0.25, maker.lamp(10));
+    add_lamp(maker);
     MaterialId caster = maker.metal(0.9f, 0.2);
     if (glass) {
       caster = maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.4});
@@ -474,25 +469,16 @@ TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
   }
 }
 
-// Fuzzy metal and rough glass scatter the light of a lamp without size also without maps, by light
-// sampling.
+TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
+  expect_same_mean_at_rough_casters([](SceneMaker& maker) {
+    maker.sphere({0.5, 0.6, 1}, 0.25, maker.lamp(10));
+  });
+}
+
 TEST(Caustics, ChangeNoMeanOfALampWithoutSizeAtFuzzyMetalAndRoughGlass) {
-  for (const bool glass : {false, true}) {
-    SCOPED_TRACE(glass);
-    SceneMaker maker;
-    add_room(maker, maker.diffuse(0.5f));
+  expect_same_mean_at_rough_casters([](SceneMaker& maker) {
     maker.scene.lights.push_back(PointLight{{0.5, 0.6, 1}, gray(2)});
-    MaterialId caster = maker.metal(0.9f, 0.2);
-    if (glass) {
-      caster = maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.4});
-    }
-    maker.sphere({0, 0, -0.8}, 0.7, caster);
-    const auto scene = maker.build();
-    const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{0.95, 0.4, -3.9})};
-    for (const std::uint32_t max_depth : {2u, 6u}) {
-      expect_same_mean(*scene, ray, max_depth);
-    }
-  }
+  });
 }
 
 /// A floor under a sky that is uniform except for one bright texel, and a ball of this material.
